@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "seqloop/frame.hpp"
+
+namespace seqloop {
+
+enum class Description : std::uint8_t {
+  good,   ///< a unit vector
+  blank,  ///< the features were all zero, so the descriptor is the zero vector (Algorithm 1)
+  failed  ///< the picture could not be described; `last_fault()` says why
+};
+
+/// Port: turns a picture into a descriptor (Algorithm 1).
+class Describer {
+ public:
+  Describer() = default;
+  Describer(const Describer&) = delete;
+  Describer& operator=(const Describer&) = delete;
+  Describer(Describer&&) = delete;
+  Describer& operator=(Describer&&) = delete;
+  virtual ~Describer() = default;
+
+  /// Values in one descriptor, D.
+  [[nodiscard]] virtual std::size_t size() const noexcept = 0;
+
+  /// @param image    any size; grey or BGR
+  /// @param descriptor [D], written: unit L2 or zero; left alone when the call fails
+  /// Errors: none thrown. Allocates: whatever the library behind it does.
+  [[nodiscard]] virtual Description describe(const Image& image,
+                                             std::span<float> descriptor) noexcept = 0;
+
+  /// Why the last call failed; valid until the next call.
+  [[nodiscard]] virtual std::string_view last_fault() const noexcept = 0;
+};
+
+}  // namespace seqloop

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "seqloop/arena.hpp"
+#include "seqloop/candidate_ranges.hpp"
+#include "seqloop/change_degree.hpp"
+#include "seqloop/difference_slices.hpp"
+#include "seqloop/frame_report.hpp"
+#include "seqloop/loop_decision.hpp"
+#include "seqloop/matcher_config.hpp"
+#include "seqloop/place_map.hpp"
+#include "seqloop/running_statistics.hpp"
+#include "seqloop/sequence_search.hpp"
+#include "seqloop/trajectories.hpp"
+
+namespace seqloop {
+
+/// Answers, frame by frame, whether the robot has been here before. One step for SeqCNNSLAM,
+/// A-SeqCNNSLAM and O-SeqCNNSLAM; they differ in which rows of the map are candidates.
+class Detector {
+ public:
+  /// Bytes of every buffer beside the map's.
+  [[nodiscard]] static std::vector<BufferSize> plan(const MatcherConfig& config,
+                                                    const Capacity& capacity);
+  [[nodiscard]] static std::size_t bytes_needed(const MatcherConfig& config,
+                                                const Capacity& capacity) {
+    return total_bytes(plan(config, capacity));
+  }
+
+  /// The most that one step can cost.
+  [[nodiscard]] static Work most_work(const MatcherConfig& config, const Capacity& capacity);
+
+  /// @param map lives longer than the detector. To localise: filled (and standardised, where the
+  ///   configuration standardises). To close loops: empty; the steps add to it.
+  /// @param memory [bytes_needed(config, map's capacity)] aligned to Arena::alignment; empty: own
+  /// Errors: SetupError, all faults at once.
+  Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory = {});
+
+  Detector(const Detector&) = delete;
+  Detector& operator=(const Detector&) = delete;
+  Detector(Detector&&) = delete;
+  Detector& operator=(Detector&&) = delete;
+  ~Detector() = default;
+
+  /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
+  /// @param descriptor [D] unit L2. Empty, of another size, or with NaN or infinity: the frame
+  ///   could not be read; it counts, the scene is taken to stand still, the gate is `frame_error`.
+  /// Work: at most `most_work`. Allocates: never.
+  [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
+
+  /// What the steps compared: the newest frame's descriptor, standardised if that is on.
+  /// @return [padded_size(D)]; at least one step must have been made
+  [[nodiscard]] std::span<const float> newest_query() const noexcept {
+    return slices_.query(slices_.frames() - 1);
+  }
+
+ private:
+  Detector(const MatcherConfig& config, PlaceMap& map, ArenaMemory&& memory);
+  Detector(Arena arena, const MatcherConfig& config, PlaceMap* map, const Capacity& capacity,
+           ArenaMemory&& memory);
+
+  [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
+  [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
+  [[nodiscard]] std::size_t fill_newest() noexcept;
+  [[nodiscard]] std::size_t fill_window(std::uint64_t oldest, CandidateRun run,
+                                        std::size_t rows) noexcept;
+  void decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept;
+
+  ArenaMemory memory_;
+  MatcherConfig config_;
+  PlaceMap* map_;
+  Trajectories trajectories_;
+  RunningStatistics statistics_;
+  DifferenceSlices slices_;
+  SequenceSearch search_;
+  CandidateRanges ranges_;
+  ChangeDegree change_degree_;
+  LoopDecision decision_;
+};
+
+}  // namespace seqloop

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace seqloop {
+
+/// How far a frame came, in the order of the pipeline.
+enum class Gate : std::uint8_t {
+  frame_error,   ///< the newest frame could not be read or described
+  warming_up,    ///< fewer than ds + 1 frames have been seen
+  no_candidate,  ///< no line fits into the rows that may be searched
+  not_unique,    ///< there is a best row, but another stands out nearly as much
+  match          ///< the robot has been here before
+};
+
+/// `frame_error`, `warming_up`, ...
+[[nodiscard]] std::string_view name(Gate gate) noexcept;
+
+/// The best row of the map for a frame.
+struct Match {
+  std::size_t place = 0;    ///< row of the map at the centre column
+  float score = 0.0F;       ///< mean difference along the line, 0 .. 2; smaller is more certain
+  float uniqueness = 0.0F;  ///< score by the best rival's score, 0 .. 1, NaN where not defined
+  double velocity = 0.0;    ///< rows a frame
+  std::size_t head = 0;     ///< row of the map at the newest column
+};
+
+/// What a frame cost. Follows from configuration and input alone, never from the machine.
+struct Work {
+  std::size_t candidates = 0;  ///< rows that got a score
+  std::size_t distances = 0;   ///< descriptor distances computed
+  std::size_t line_sums = 0;   ///< lines summed, ds + 1 adds each
+
+  bool operator==(const Work&) const = default;
+};
+
+/// The answer to one frame.
+struct FrameReport {
+  std::uint64_t newest = 0;            ///< the frame that was stepped, from 0
+  std::optional<std::uint64_t> frame;  ///< the centre frame, which the answer is about, once known
+  Gate gate = Gate::frame_error;
+  std::optional<Match> match;  ///< at the gates `not_unique` and `match`
+  std::size_t k = 0;           ///< K in force for this frame; 0 where all rows are candidates
+  bool full_search = false;    ///< whether all rows were candidates
+  bool map_full = false;       ///< closing loops: the frame could not become a place
+  Work work;
+};
+
+}  // namespace seqloop

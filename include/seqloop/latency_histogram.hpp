@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "seqloop/clock.hpp"
+
+namespace seqloop {
+
+/// Durations in fixed memory: buckets that are at most 1/32 wide, from 1 ns to 2^63 ns.
+class LatencyHistogram {
+ public:
+  /// Negative durations count as zero. Work: constant. Allocates: never.
+  void add(Nanoseconds duration) noexcept;
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] Nanoseconds maximum() const noexcept { return maximum_; }
+
+  /// @param share 0 .. 1, such as 0.99
+  /// @return a duration that at least this share of all does not exceed, up to 1/32 too high, never
+  ///   above the maximum; zero when nothing was added
+  [[nodiscard]] Nanoseconds quantile(double share) const noexcept;
+
+ private:
+  static constexpr unsigned steps_bits = 5;
+  static constexpr std::size_t steps = std::size_t{1} << steps_bits;
+
+  std::array<std::uint64_t, (64 - steps_bits) * steps> buckets_{};
+  std::uint64_t count_ = 0;
+  Nanoseconds maximum_{0};
+};
+
+}  // namespace seqloop

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "seqloop/candidate_ranges.hpp"
+
+namespace seqloop {
+
+/// The best row among a frame's candidates and how far it stands out.
+struct BestRow {
+  std::size_t row;
+  float score;         ///< infinity never comes here
+  float uniqueness;    ///< score by the best score outside the row's window; NaN where not defined
+  std::size_t scored;  ///< candidates that had a score
+};
+
+/// Picks the best row and says how unique it is. Source: ALGORITHMS, match and confidence; D4.
+class LoopDecision {
+ public:
+  /// @param rwindow rows around the best that are no rivals
+  explicit LoopDecision(std::size_t rwindow) noexcept : half_window_(rwindow / 2) {}
+
+  /// @param scores [places], infinity for a row that no line fits
+  /// @param full_search whether the runs are all rows: their best rival stands in later, at frames
+  /// whose candidates have none
+  /// @return the row with the lowest score, the lower row of equals; none when no row has a score
+  /// Work: two passes over the candidates. Allocates: never.
+  [[nodiscard]] std::optional<BestRow> decide(std::span<const float> scores,
+                                              std::span<const CandidateRun> runs,
+                                              bool full_search) noexcept;
+
+ private:
+  std::size_t half_window_;
+  std::optional<float> last_full_rival_;
+};
+
+}  // namespace seqloop

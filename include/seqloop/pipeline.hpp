@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "seqloop/clock.hpp"
+#include "seqloop/describer.hpp"
+#include "seqloop/detector.hpp"
+#include "seqloop/frame_report.hpp"
+#include "seqloop/frame_source.hpp"
+
+namespace seqloop {
+
+/// Where a frame's time went.
+struct StageTimes {
+  Nanoseconds grab{0};
+  Nanoseconds describe{0};
+  Nanoseconds match{0};
+  Nanoseconds total{0};
+};
+
+/// What the pipeline says of one frame.
+struct ProcessedFrame {
+  Frame frame;  ///< as grabbed; valid until the next frame
+  FrameReport report;
+  std::string_view fault;  ///< why the gate is `frame_error`; empty otherwise
+  StageTimes times;
+};
+
+/// How a recording is played.
+enum class Pace : std::uint8_t {
+  max,  ///< a frame as soon as the one before is done
+  live  ///< no frame before its time
+};
+
+/// Grab, describe, match: one frame in, one report out.
+class Pipeline {
+ public:
+  /// All of them live longer than the pipeline. @param describer may be null when the source hands
+  /// over descriptors. Allocates: one descriptor.
+  Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
+           std::size_t descriptor_size, Pace pace);
+
+  /// @return none when the drive is over
+  /// Errors: none thrown. Allocates: what source and describer do; matching never.
+  [[nodiscard]] std::optional<ProcessedFrame> process() noexcept;
+
+ private:
+  [[nodiscard]] std::span<const float> describe(const Frame& frame, Grab grab,
+                                                std::string_view& fault) noexcept;
+
+  FrameSource* source_;
+  Describer* describer_;
+  Detector* detector_;
+  Clock* clock_;
+  Pace pace_;
+  std::optional<Nanoseconds> start_;
+  std::vector<float> descriptor_;
+};
+
+}  // namespace seqloop

@@ -1,0 +1,41 @@
+#include "seqloop/difference.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace seqloop {
+namespace {
+
+using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
+using LanesView = Eigen::Map<const Lanes>;
+
+}  // namespace
+
+float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
+  // Partial sums move to double before float has lost digits on long descriptors.
+  constexpr std::size_t block = 64 * lanes;
+  double sum = 0.0;
+  for (std::size_t first = 0; first < a.size(); first += block) {
+    const std::size_t last = std::min(first + block, a.size());
+    Lanes partial = Lanes::Zero();
+    for (std::size_t i = first; i < last; i += lanes) {
+      partial += (LanesView(a.data() + i) - LanesView(b.data() + i)).square();
+    }
+    for (const float lane : partial) sum += static_cast<double>(lane);
+  }
+  return static_cast<float>(std::sqrt(sum));
+}
+
+bool normalise(std::span<float> vector) noexcept {
+  double squares = 0.0;
+  for (const float value : vector) {
+    squares += static_cast<double>(value) * static_cast<double>(value);
+  }
+  if (squares <= 0.0) return false;
+  const double norm = std::sqrt(squares);
+  for (float& value : vector) value = static_cast<float>(static_cast<double>(value) / norm);
+  return true;
+}
+
+}  // namespace seqloop

@@ -1,0 +1,21 @@
+#include "seqloop/frame_report.hpp"
+
+namespace seqloop {
+
+std::string_view name(Gate gate) noexcept {
+  switch (gate) {
+    case Gate::frame_error:
+      return "frame_error";
+    case Gate::warming_up:
+      return "warming_up";
+    case Gate::no_candidate:
+      return "no_candidate";
+    case Gate::not_unique:
+      return "not_unique";
+    case Gate::match:
+      return "match";
+  }
+  return "unknown";
+}
+
+}  // namespace seqloop

@@ -1,0 +1,49 @@
+#include "seqloop/loop_decision.hpp"
+
+#include <limits>
+
+namespace seqloop {
+namespace {
+
+constexpr float no_score = std::numeric_limits<float>::infinity();
+
+struct Lowest {
+  std::size_t row = 0;
+  float score = no_score;
+  std::size_t scored = 0;
+};
+
+/// The lowest score of the candidates that `counts` lets in.
+template <class Counts>
+Lowest lowest(std::span<const float> scores, std::span<const CandidateRun> runs, Counts counts) {
+  Lowest found;
+  for (const CandidateRun run : runs) {
+    for (std::size_t row = run.first; row < run.last; ++row) {
+      if (scores[row] == no_score || !counts(row)) continue;
+      ++found.scored;
+      if (scores[row] < found.score) found = {row, scores[row], found.scored};
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<BestRow> LoopDecision::decide(std::span<const float> scores,
+                                            std::span<const CandidateRun> runs,
+                                            bool full_search) noexcept {
+  const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
+  if (best.scored == 0) return std::nullopt;
+  const Lowest rival = lowest(scores, runs, [&](std::size_t row) {
+    return row + half_window_ < best.row || row > best.row + half_window_;
+  });
+  std::optional<float> rival_score;
+  if (rival.scored > 0) rival_score = rival.score;
+  if (full_search) last_full_rival_ = rival_score;
+  if (!rival_score) rival_score = last_full_rival_;
+  const float uniqueness =
+      rival_score ? best.score / *rival_score : std::numeric_limits<float>::quiet_NaN();
+  return BestRow{best.row, best.score, uniqueness, best.scored};
+}
+
+}  // namespace seqloop

@@ -1,0 +1,75 @@
+#include "seqloop/matcher_config.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "seqloop/trajectories.hpp"
+
+namespace seqloop {
+namespace {
+
+std::string number(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+void check_range(Faults& faults, const char* name, std::size_t value, std::size_t low,
+                 std::size_t high) {
+  if (value >= low && value <= high) return;
+  faults.push_back({name, std::to_string(value) + " is not between " + std::to_string(low) +
+                              " and " + std::to_string(high)});
+}
+
+void check_velocities(Faults& faults, const MatcherConfig& config) {
+  constexpr double fastest = 10.0;
+  const auto check = [&](const char* name, double velocity) {
+    if (velocity >= 0.0 && velocity <= fastest) return true;
+    faults.push_back({name, number(velocity) + " is not between 0 and 10 rows a frame"});
+    return false;
+  };
+  const bool vmin_fits = check("vmin", config.vmin);
+  const bool vmax_fits = check("vmax", config.vmax);
+  if (!vmin_fits || !vmax_fits) return;
+  if (config.vmin > config.vmax) {
+    faults.push_back({"vmin", number(config.vmin) + " is above vmax, " + number(config.vmax)});
+  } else if (config.sequence_length >= 1 &&
+             velocity_range(config.sequence_length, config.vmin, config.vmax).count() == 0) {
+    faults.push_back({"vmin, vmax",
+                      "no velocity m/" + std::to_string(config.sequence_length) + " lies between " +
+                          number(config.vmin) + " and " + number(config.vmax),
+                      "widen the range or lengthen ds"});
+  }
+}
+
+}  // namespace
+
+Faults validate(const MatcherConfig& config) {
+  constexpr std::size_t many = 1'000'000'000;
+  Faults faults;
+  check_range(faults, "ds", config.sequence_length, 1, 2'000);
+  check_velocities(faults, config);
+  check_range(faults, "rwindow", config.rwindow, 0, many);
+  check_range(faults, "k", config.k, 1, 100'000);
+  check_range(faults, "initial-k", config.initial_k, 1, 100'000);
+  check_range(faults, "num", config.num, 1, many);
+  check_range(faults, "reinit", config.reinit, 1, many);
+  check_range(faults, "exclude", config.exclude, 1, many);
+  check_range(faults, "standardise-prior", config.standardisation.prior_frames, 1, many);
+  check_range(faults, "standardise-horizon", config.standardisation.horizon, 1, many);
+  if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {
+    faults.push_back(
+        {"max-uniqueness", number(config.max_uniqueness) + " is not above 0 and at most 1"});
+  }
+  return faults;
+}
+
+Faults validate(const Capacity& capacity) {
+  Faults faults;
+  check_range(faults, "places", capacity.places, 1, std::size_t{1} << 32U);
+  check_range(faults, "descriptor size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
+  return faults;
+}
+
+}  // namespace seqloop

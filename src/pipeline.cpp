@@ -1,0 +1,61 @@
+#include "seqloop/pipeline.hpp"
+
+namespace seqloop {
+
+Pipeline::Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
+                   std::size_t descriptor_size, Pace pace)
+    : source_(&source),
+      describer_(describer),
+      detector_(&detector),
+      clock_(&clock),
+      pace_(pace),
+      descriptor_(descriptor_size) {}
+
+std::optional<ProcessedFrame> Pipeline::process() noexcept {
+  ProcessedFrame processed;
+  const Nanoseconds began = clock_->now();
+  const Grab grab = source_->grab(processed.frame);
+  if (grab == Grab::end) return std::nullopt;
+  Nanoseconds grabbed = clock_->now();
+  processed.times.grab = grabbed - began;
+  if (pace_ == Pace::live) {
+    if (!start_) start_ = grabbed;
+    const std::chrono::duration<double> due(processed.frame.time_s);
+    clock_->sleep_until(*start_ + std::chrono::duration_cast<Nanoseconds>(due));
+    grabbed = clock_->now();
+  }
+
+  const std::span<const float> descriptor = describe(processed.frame, grab, processed.fault);
+  const Nanoseconds described = clock_->now();
+  processed.report = detector_->step(descriptor);
+  const Nanoseconds matched = clock_->now();
+
+  if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
+    processed.fault = "the descriptor holds values that are not finite, or too few or too many";
+  }
+  processed.times.describe = described - grabbed;
+  processed.times.match = matched - described;
+  processed.times.total = processed.times.grab + (matched - grabbed);
+  return processed;
+}
+
+/// @return the frame's descriptor, empty when there is none: then `fault` says why
+std::span<const float> Pipeline::describe(const Frame& frame, Grab grab,
+                                          std::string_view& fault) noexcept {
+  if (grab == Grab::unreadable) {
+    fault = frame.fault;
+    return {};
+  }
+  if (!frame.descriptor.empty()) return frame.descriptor;
+  if (describer_ == nullptr) {
+    fault = "nothing is there to describe pictures with";
+    return {};
+  }
+  if (describer_->describe(frame.image, descriptor_) == Description::failed) {
+    fault = describer_->last_fault();
+    return {};
+  }
+  return descriptor_;
+}
+
+}  // namespace seqloop

@@ -1,0 +1,53 @@
+#include "seqloop/trajectories.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace seqloop {
+
+VelocityRange velocity_range(std::size_t ds, double vmin, double vmax) noexcept {
+  // 1.1 * 10 is a little above 11 in binary: a bound that is meant to be whole must stay whole.
+  constexpr double rounding = 1e-9;
+  const auto length = static_cast<double>(ds);
+  return {static_cast<std::int64_t>(std::ceil(vmin * length - rounding)),
+          static_cast<std::int64_t>(std::floor(vmax * length + rounding))};
+}
+
+std::int64_t trajectory_offset(std::int64_t m, std::size_t i, std::size_t ds) noexcept {
+  const auto length = static_cast<std::int64_t>(ds);
+  const std::int64_t from_centre = static_cast<std::int64_t>(i) - length / 2;
+  const std::int64_t numerator = 2 * m * from_centre + length;
+  const std::int64_t denominator = 2 * length;
+  const std::int64_t quotient = numerator / denominator;
+  return numerator % denominator < 0 ? quotient - 1 : quotient;
+}
+
+Trajectories::Trajectories(Arena& arena, std::size_t ds, double vmin, double vmax)
+    : ds_(ds),
+      range_(velocity_range(ds, vmin, vmax)),
+      offsets_(arena.take<std::int32_t>("trajectory offsets", range_.count() * (ds + 1))) {
+  if (arena.measuring()) return;
+  for (std::size_t line = 0; line < count(); ++line) {
+    for (std::size_t i = 0; i < window(); ++i) {
+      offsets_[line * window() + i] = static_cast<std::int32_t>(
+          trajectory_offset(range_.first + static_cast<std::int64_t>(line), i, ds));
+    }
+  }
+}
+
+double Trajectories::velocity(std::size_t line) const noexcept {
+  return static_cast<double>(range_.first + static_cast<std::int64_t>(line)) /
+         static_cast<double>(ds_);
+}
+
+// Offsets are monotone in m: left of the centre the fastest line is the lowest, right of it the
+// slowest.
+std::int32_t Trajectories::lowest(std::size_t i) const noexcept {
+  return std::min(offsets(0)[i], offsets(count() - 1)[i]);
+}
+
+std::int32_t Trajectories::highest(std::size_t i) const noexcept {
+  return std::max(offsets(0)[i], offsets(count() - 1)[i]);
+}
+
+}  // namespace seqloop

@@ -1,0 +1,184 @@
+// What a step promises beside the right answer: bounded work, fixed memory, honest gates.
+#include <cmath>
+#include <limits>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+oracle::Vectors two_laps(std::uint32_t seed, std::size_t frames, std::size_t size) {
+  oracle::Vectors laps = oracle::drive(seed, frames, size, 0.2F);
+  const oracle::Vectors second = oracle::drive(seed, frames, size, 0.3F);
+  laps.insert(laps.end(), second.begin(), second.end());
+  return laps;
+}
+
+TEST(Detector, NeverComputesMoreThanThePlanSays) {
+  for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
+    for (const Use use : {Use::localise, Use::close_loops}) {
+      for (const std::size_t exclude : {1U, 5U, 40U}) {
+        MatcherConfig config = paper(candidates, 20, use);
+        config.exclude = exclude;
+        config.reinit = 30;
+        const oracle::Vectors drive = two_laps(9, 80, 12);
+        const bool closing = use == Use::close_loops;
+        const std::size_t places = closing ? drive.size() : 80;
+        const Work most = Detector::most_work(config, {places, 12});
+        std::size_t all = 0;
+        std::size_t change = 0;
+        for (const FrameReport& report :
+             reports(closing ? oracle::Vectors{} : oracle::drive(9, 80, 12), drive, config)) {
+          EXPECT_LE(report.work.distances, most.distances);
+          EXPECT_LE(report.work.line_sums, most.line_sums);
+          EXPECT_LE(report.work.candidates, most.candidates);
+          all += report.work.distances;
+          if (candidates == Candidates::adaptive) change += ChangeDegree::reach;
+        }
+        EXPECT_LE(all, places * drive.size() + change) << "each difference at most once";
+      }
+    }
+  }
+}
+
+TEST(Detector, SpreadsTheExhaustiveWorkEvenly) {
+  for (const FrameReport& report :
+       reports(oracle::drive(4, 70, 8), oracle::drive(4, 60, 8), paper(Candidates::all, 20))) {
+    EXPECT_EQ(report.work.distances, 70U) << "one column a frame, the first included";
+  }
+}
+
+TEST(Detector, SameInputSameReports) {
+  const oracle::Vectors drive = two_laps(2, 120, 30);
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  const auto first = reports({}, drive, config);
+  const auto second = reports({}, drive, config);
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].gate, second[i].gate);
+    EXPECT_EQ(first[i].work, second[i].work);
+    ASSERT_EQ(first[i].match.has_value(), second[i].match.has_value());
+    if (!first[i].match) continue;
+    EXPECT_EQ(first[i].match->place, second[i].match->place);
+    EXPECT_EQ(first[i].match->score, second[i].match->score) << "to the last bit";
+  }
+}
+
+TEST(Detector, LivesInMemoryThatTheCallerGives) {
+  MatcherConfig config = paper(Candidates::all, 5);
+  PlaceMap map = map_of(oracle::drive(1, 30, 9));
+  const std::size_t bytes = Detector::bytes_needed(config, {30, 9});
+  const ArenaMemory memory(bytes, {});
+  Detector detector(config, map, memory.span());
+  EXPECT_EQ(detector.step(oracle::drive(1, 1, 9)[0]).gate, Gate::warming_up);
+  EXPECT_THROW(Detector(config, map, memory.span().first(bytes - 1)), SetupError);
+  EXPECT_THROW(Detector(config, map, memory.span().subspan(1)), SetupError);
+}
+
+TEST(Detector, NamesTheGateAndTheCentreFrame) {
+  const oracle::Vectors drive = oracle::drive(6, 40, 16, 0.1F);
+  MatcherConfig config = paper(Candidates::all, 10);
+  config.max_uniqueness = 0.9F;
+  const auto all = reports(drive, drive, config);
+  EXPECT_FALSE(all[4].frame.has_value());
+  EXPECT_EQ(all[5].frame, 0U);
+  EXPECT_EQ(all[9].gate, Gate::warming_up);
+  EXPECT_EQ(all[10].gate, Gate::match);
+  EXPECT_EQ(all[10].frame, 5U);
+  EXPECT_EQ(all[10].match->place, 5U);
+  EXPECT_EQ(all[10].match->head, 10U);
+  EXPECT_EQ(all[39].frame, 34U);
+}
+
+TEST(Detector, AFrameThatCannotBeReadDecidesNothingAndBreaksNothing) {
+  const oracle::Vectors drive = oracle::drive(6, 60, 16, 0.1F);
+  for (const std::vector<float>& broken :
+       {std::vector<float>{}, std::vector<float>(15, 0.1F),
+        std::vector<float>(16, std::numeric_limits<float>::quiet_NaN()),
+        std::vector<float>(16, std::numeric_limits<float>::infinity())}) {
+    for (const bool standardise : {false, true}) {
+      MatcherConfig config = paper(Candidates::all, 10);
+      config.standardisation.on = standardise;
+      PlaceMap map = map_of(drive);
+      if (standardise) map.standardise();
+      Detector detector(config, map);
+      for (std::size_t frame = 0; frame < 60; ++frame) {
+        const bool bad = frame == 0 || frame == 30 || frame == 31;
+        const FrameReport report = detector.step(bad ? broken : drive[frame]);
+        EXPECT_EQ(report.gate == Gate::frame_error, bad) << frame;
+        EXPECT_EQ(report.match.has_value(), !bad && frame >= 10) << frame;
+        if (report.match) {
+          EXPECT_EQ(report.match->place, *report.frame) << frame;
+        }
+      }
+    }
+  }
+}
+
+TEST(Detector, SaysWhenTheMapIsFullAndKeepsAnswering) {
+  const oracle::Vectors laps = two_laps(8, 150, 16);
+  MatcherConfig config = paper(Candidates::all, 10, Use::close_loops);
+  config.exclude = 20;
+  PlaceMap map({200, 16});
+  Detector detector(config, map);
+  std::size_t right = 0;
+  for (std::size_t frame = 0; frame < laps.size(); ++frame) {
+    const FrameReport report = detector.step(laps[frame]);
+    EXPECT_EQ(report.map_full, frame >= 200);
+    if (report.match && *report.frame >= 160) right += report.match->place == *report.frame - 150;
+  }
+  EXPECT_GT(right, 120U);
+  EXPECT_EQ(map.size(), 200U);
+}
+
+TEST(Detector, ListsEveryFaultOfItsSetUp) {
+  MatcherConfig config;
+  config.sequence_length = 0;
+  config.vmin = 1.3;
+  config.k = 0;
+  config.num = 0;
+  config.max_uniqueness = std::numeric_limits<float>::quiet_NaN();
+  PlaceMap map({3, 3});
+  try {
+    const Detector detector(config, map);
+    FAIL() << "must not be built";
+  } catch (const SetupError& error) {
+    std::vector<std::string> names;
+    for (const Fault& fault : error.faults()) names.push_back(fault.what);
+    EXPECT_EQ(names, (std::vector<std::string>{"ds", "vmin", "k", "num", "max-uniqueness", "map"}));
+  }
+}
+
+TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {
+  MatcherConfig config = paper(Candidates::all, 5);
+  PlaceMap standardised = map_of(oracle::drive(1, 30, 9));
+  standardised.standardise();
+  EXPECT_THROW(Detector(config, standardised), SetupError);
+  PlaceMap raw = map_of(oracle::drive(1, 30, 9));
+  config.standardisation.on = true;
+  EXPECT_THROW(Detector(config, raw), SetupError);
+  config.use = Use::close_loops;
+  EXPECT_THROW(Detector(config, raw), SetupError);
+}
+
+TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
+  const auto faults = [](auto change) {
+    MatcherConfig config;
+    change(config);
+    return validate(config).size();
+  };
+  EXPECT_EQ(faults([](MatcherConfig&) {}), 0U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.sequence_length = 1; }), 0U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.sequence_length = 2000; }), 0U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.sequence_length = 2001; }), 1U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = c.vmax = 1.0; }), 0U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = -0.1; }), 1U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.vmax = std::nan(""); }), 1U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = 1.01, c.vmax = 1.02; }), 1U);
+  EXPECT_EQ(validate(Capacity{0, 0}).size(), 2U);
+  EXPECT_EQ(validate(Capacity{std::size_t{1} << 32U, std::size_t{1} << 22U}).size(), 0U);
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,236 @@
+// Each kernel beside its definition.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/matcher.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/latency_histogram.hpp"
+#include "seqloop/trajectories.hpp"
+
+namespace seqloop {
+namespace {
+
+/// Heap-backed arena for a component under test.
+struct TestArena {
+  ArenaMemory memory{std::size_t{1} << 24U, {}};
+  Arena arena{memory.span()};
+};
+
+TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
+  std::mt19937 random(11);
+  std::normal_distribution<float> normal;
+  for (const std::size_t size : {0U, 16U, 32U, 48U, 1024U, 1040U, 9216U}) {
+    std::vector<float> a(size);
+    std::vector<float> b(size);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < size; ++i) {
+      a[i] = normal(random);
+      b[i] = normal(random);
+      sum += (double{a[i]} - double{b[i]}) * (double{a[i]} - double{b[i]});
+    }
+    EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
+    EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
+  }
+}
+
+TEST(PaddedSize, IsTheNextWholeNumberOfLanes) {
+  EXPECT_EQ(padded_size(0), 0U);
+  EXPECT_EQ(padded_size(1), 16U);
+  EXPECT_EQ(padded_size(16), 16U);
+  EXPECT_EQ(padded_size(17), 32U);
+}
+
+TEST(Normalise, MakesUnitVectorsAndLeavesZeroAlone) {
+  std::vector<float> vector{3.0F, 0.0F, -4.0F};
+  EXPECT_TRUE(normalise(vector));
+  EXPECT_EQ(vector, (std::vector<float>{0.6F, 0.0F, -0.8F}));
+  std::vector<float> zero(5, 0.0F);
+  EXPECT_FALSE(normalise(zero));
+  EXPECT_EQ(zero, std::vector<float>(5, 0.0F));
+  std::vector<float> tiny{1e-30F, 0.0F};
+  EXPECT_TRUE(normalise(tiny));
+  EXPECT_FLOAT_EQ(tiny[0], 1.0F);
+}
+
+TEST(Trajectories, OffsetsRoundHalfUpAndAreZeroAtTheCentre) {
+  for (std::size_t ds = 1; ds <= 101; ++ds) {
+    const VelocityRange range = velocity_range(ds, 0.8, 1.2);
+    for (std::int64_t m = range.first; m <= range.last; ++m) {
+      EXPECT_EQ(trajectory_offset(m, ds / 2, ds), 0);
+      for (std::size_t i = 0; i <= ds; ++i) {
+        const double exact = static_cast<double>(m) *
+                             (static_cast<double>(i) - static_cast<double>(ds / 2)) /
+                             static_cast<double>(ds);
+        const auto offset = static_cast<double>(trajectory_offset(m, i, ds));
+        EXPECT_LE(offset - exact, 0.5 + 1e-9) << ds << ' ' << m << ' ' << i;
+        EXPECT_GT(offset - exact, -0.5 - 1e-9) << ds << ' ' << m << ' ' << i;
+      }
+    }
+  }
+  EXPECT_EQ(trajectory_offset(1, 0, 2), 0) << "-1/2 rounds up";
+  EXPECT_EQ(trajectory_offset(1, 2, 2), 1) << "1/2 rounds up";
+  EXPECT_EQ(trajectory_offset(3, 0, 2), -1) << "-3/2 rounds up";
+}
+
+TEST(Trajectories, CountsTheLinesThatDiffer) {
+  EXPECT_EQ(velocity_range(100, 0.8, 1.2).count(), 41U);
+  EXPECT_EQ(velocity_range(20, 0.8, 1.2).count(), 9U);
+  EXPECT_EQ(velocity_range(1, 0.8, 1.2).count(), 1U);
+  EXPECT_EQ(velocity_range(10, 1.1, 1.1).count(), 1U) << "1.1 * 10 is above 11 in binary";
+  EXPECT_EQ(velocity_range(10, 1.01, 1.09).count(), 0U);
+}
+
+TEST(Trajectories, KnowItsLowestAndHighestOffsets) {
+  TestArena memory;
+  const Trajectories trajectories(memory.arena, 21, 0.8, 1.2);
+  for (std::size_t i = 0; i < trajectories.window(); ++i) {
+    for (std::size_t line = 0; line < trajectories.count(); ++line) {
+      EXPECT_LE(trajectories.lowest(i), trajectories.offsets(line)[i]);
+      EXPECT_GE(trajectories.highest(i), trajectories.offsets(line)[i]);
+    }
+  }
+}
+
+TEST(RunningStatistics, EqualTheBatchDefinition) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 3);
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal(2.0F, 3.0F);
+  std::vector<std::vector<float>> frames;
+  for (int i = 0; i < 200; ++i) {
+    frames.push_back({normal(random), normal(random), 7.0F});
+    statistics.observe(frames.back());
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    double mean = 0.0;
+    double variance = 0.0;
+    for (const auto& frame : frames) mean += double{frame[d]} / 200.0;
+    for (const auto& frame : frames) variance += std::pow(double{frame[d]} - mean, 2.0) / 200.0;
+    EXPECT_NEAR(statistics.mean()[d], mean, 1e-9);
+    EXPECT_NEAR(statistics.variance()[d], variance, 1e-9);
+  }
+  std::vector<float> out(3);
+  EXPECT_TRUE(statistics.standardise(frames[0], out));
+  EXPECT_EQ(out[2], 0.0F) << "a feature that never changes says nothing";
+  EXPECT_NEAR(std::hypot(out[0], out[1]), 1.0, 1e-6);
+}
+
+TEST(RunningStatistics, FirstFrameBecomesTheZeroVector) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 2);
+  const std::vector<float> frame{1.0F, 2.0F};
+  statistics.observe(frame);
+  std::vector<float> out{9.0F, 9.0F};
+  EXPECT_FALSE(statistics.standardise(frame, out));
+  EXPECT_EQ(out, (std::vector<float>{0.0F, 0.0F}));
+}
+
+TEST(RunningStatistics, StartFromAnotherDriveAndMoveOn) {
+  TestArena memory;
+  RunningStatistics map(memory.arena, 1);
+  for (const float value : {1.0F, 3.0F, 1.0F, 3.0F}) map.observe(std::vector<float>{value});
+  RunningStatistics query(memory.arena, 1);
+  query.start_from(map, 2);
+  EXPECT_EQ(query.frames(), 2U);
+  EXPECT_EQ(query.mean()[0], 2.0);
+  query.observe(std::vector<float>{5.0F}, 100);
+  EXPECT_DOUBLE_EQ(query.mean()[0], 3.0) << "one frame against a prior of two";
+  EXPECT_DOUBLE_EQ(query.variance()[0], (2.0 / 3.0) * (1.0 + 9.0 / 3.0));
+  query.start_from(map, 99);
+  EXPECT_EQ(query.frames(), 4U) << "a prior counts for no more than what was seen";
+}
+
+TEST(RunningStatistics, ForgetBeyondTheHorizon) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 1);
+  for (int i = 0; i < 1000; ++i) statistics.observe(std::vector<float>{0.0F}, 10);
+  for (int i = 0; i < 100; ++i) statistics.observe(std::vector<float>{1.0F}, 10);
+  EXPECT_GT(statistics.mean()[0], 0.9999);
+}
+
+class Slices : public testing::Test {
+ protected:
+  static constexpr Capacity capacity{6, 20};
+  oracle::Vectors drive_ = oracle::drive(21, 30, 20);
+  PlaceMap map_ = map_of({drive_.begin(), drive_.begin() + 6});
+  TestArena memory_;
+  DifferenceSlices slices_{memory_.arena, 3, 5, capacity};
+
+  void push(std::size_t frame) {
+    const std::span<float> query = slices_.push();
+    std::ranges::copy(drive_[frame], query.begin());
+  }
+};
+
+TEST_F(Slices, ComputeADifferenceOnceAndOnlyWhereAsked) {
+  push(0);
+  EXPECT_EQ(slices_.fill(map_, 0, 2, 4), 2U);
+  EXPECT_LT(slices_.column(0)[1], 0.0F) << "not asked for";
+  EXPECT_EQ(slices_.fill(map_, 0, 2, 4), 0U);
+  EXPECT_EQ(slices_.fill(map_, 0, 0, 6), 4U);
+  EXPECT_EQ(slices_.fill(map_, 0, 0, 6), 0U);
+  EXPECT_EQ(slices_.fill(map_, 0, 3, 3), 0U);
+}
+
+TEST_F(Slices, HoldTheRightColumnAfterWrappingTwice) {
+  for (std::size_t frame = 0; frame < 7; ++frame) {
+    push(frame);
+    for (std::uint64_t kept = frame < 2 ? 0 : frame - 2; kept <= frame; ++kept) {
+      const bool fresh = kept == frame;
+      EXPECT_EQ(slices_.fill(map_, kept, 0, 6), fresh ? 6U : 0U) << frame << ' ' << kept;
+      for (std::size_t row = 0; row < 6; ++row) {
+        double sum = 0.0;
+        for (std::size_t d = 0; d < 20; ++d) {
+          sum += std::pow(double{drive_[kept][d]} - double{drive_[row][d]}, 2.0);
+        }
+        EXPECT_NEAR(slices_.column(kept)[row], std::sqrt(sum), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(PlaceMap, SaysWhenItIsFullAndStaysAsItWas) {
+  PlaceMap map({2, 3});
+  EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F, 0.0F}));
+  EXPECT_TRUE(map.add(std::vector<float>{0.0F, 1.0F, 0.0F}));
+  EXPECT_FALSE(map.add(std::vector<float>{0.0F, 0.0F, 1.0F}));
+  EXPECT_EQ(map.size(), 2U);
+  EXPECT_EQ(map.place(1)[1], 1.0F);
+  EXPECT_EQ(map.place(1).size(), padded_size(3));
+  EXPECT_EQ(map.place(1)[15], 0.0F);
+}
+
+TEST(LatencyHistogram, QuantilesAreWithinABucketOfTheSortedList) {
+  std::mt19937_64 random(3);
+  std::lognormal_distribution<double> durations(12.0, 3.0);
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.quantile(0.5).count(), 0);
+  std::vector<std::int64_t> all;
+  for (int i = 0; i < 5000; ++i) {
+    all.push_back(static_cast<std::int64_t>(durations(random)));
+    histogram.add(Nanoseconds(all.back()));
+  }
+  std::sort(all.begin(), all.end());
+  for (const double share : {0.001, 0.5, 0.9, 0.99, 0.999, 1.0}) {
+    const auto rank = static_cast<std::size_t>(std::ceil(share * 5000.0)) - 1;
+    const auto exact = static_cast<double>(all[rank]);
+    const auto given = static_cast<double>(histogram.quantile(share).count());
+    EXPECT_GE(given, exact) << share;
+    EXPECT_LE(given, exact * (1.0 + 1.0 / 32.0) + 1.0) << share;
+  }
+  EXPECT_EQ(histogram.maximum().count(), all.back());
+}
+
+TEST(LatencyHistogram, TakesTheLongestAndTheImpossible) {
+  LatencyHistogram histogram;
+  histogram.add(Nanoseconds::max());
+  histogram.add(Nanoseconds(-5));
+  EXPECT_EQ(histogram.quantile(1.0), Nanoseconds::max());
+  EXPECT_EQ(histogram.quantile(0.5), Nanoseconds(0));
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/oracle.hpp"
+#include "seqloop/detector.hpp"
+
+namespace seqloop {
+
+/// A configuration that the paper's letter asks for.
+inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use::localise) {
+  MatcherConfig config;
+  config.candidates = candidates;
+  config.use = use;
+  config.sequence_length = ds;
+  config.standardisation.on = false;
+  config.max_uniqueness = 1.0F;
+  return config;
+}
+
+/// A map that holds a whole drive as it came.
+inline PlaceMap map_of(const oracle::Vectors& places) {
+  PlaceMap map({places.size(), places.front().size()});
+  for (const auto& place : places) EXPECT_TRUE(map.add(place));
+  return map;
+}
+
+/// Every report of a drive. @param reference empty: close loops within the query.
+inline std::vector<FrameReport> reports(const oracle::Vectors& reference,
+                                        const oracle::Vectors& query, const MatcherConfig& config) {
+  PlaceMap map =
+      reference.empty() ? PlaceMap({query.size(), query.front().size()}) : map_of(reference);
+  if (config.standardisation.on && !reference.empty()) map.standardise();
+  Detector detector(config, map);
+  std::vector<FrameReport> all;
+  for (const auto& descriptor : query) all.push_back(detector.step(descriptor));
+  return all;
+}
+
+}  // namespace seqloop

@@ -1,0 +1,63 @@
+// A step takes no memory, and the guard that says so can fail.
+#include <cstdlib>
+#include <memory>
+
+#include "core/allocation_guard.hpp"
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+class NoAllocation : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!AllocationGuard::works()) GTEST_SKIP() << "a sanitizer's heap cannot be counted";
+  }
+};
+
+TEST_F(NoAllocation, TheGuardFires) {
+  const AllocationGuard guard;
+  EXPECT_EQ(guard.count(), 0U);
+  volatile auto* with_new = new int(1);
+  EXPECT_EQ(guard.count(), 1U);
+  delete with_new;
+  void* volatile with_malloc = std::malloc(8);
+  EXPECT_EQ(guard.count(), 2U);
+  with_malloc = std::realloc(with_malloc, 4000);
+  EXPECT_EQ(guard.count(), 3U);
+  std::free(with_malloc);
+  const ArenaMemory aligned(64, {});
+  EXPECT_EQ(guard.count(), 4U);
+}
+
+TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
+  const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
+  for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
+    for (const Use use : {Use::localise, Use::close_loops}) {
+      for (const bool standardise : {false, true}) {
+        MatcherConfig config;
+        config.candidates = candidates;
+        config.use = use;
+        config.exclude = 30;
+        config.reinit = 20;
+        config.standardisation.on = standardise;
+        PlaceMap map = use == Use::localise ? map_of(lap) : PlaceMap({200, 40});
+        if (use == Use::localise && standardise) map.standardise();
+        Detector detector(config, map);
+        std::size_t matched = 0;
+        const AllocationGuard guard;
+        for (int repeat = 0; repeat < 2; ++repeat) {
+          for (const auto& descriptor : lap) {
+            matched += detector.step(descriptor).match.has_value();
+          }
+          matched += detector.step({}).match.has_value();
+        }
+        EXPECT_EQ(guard.count(), 0U);
+        EXPECT_GT(matched, 100U);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace seqloop

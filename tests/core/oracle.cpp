@@ -1,0 +1,210 @@
+#include "core/oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+
+namespace seqloop::oracle {
+namespace {
+
+using Int = std::int64_t;
+constexpr double none = std::numeric_limits<double>::infinity();
+
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (std::size_t d = 0; d < a.size(); ++d) {
+    const double difference = double{a[d]} - double{b[d]};
+    sum += difference * difference;
+  }
+  return std::sqrt(sum);
+}
+
+struct Line {
+  double score = none;
+  Int m = 0;
+};
+
+class Matcher {
+ public:
+  Matcher(const Vectors& reference, const Vectors& query, const MatcherConfig& config)
+      : closing_(reference.empty()),
+        r_(closing_ ? query : reference),
+        q_(query),
+        config_(config),
+        ds_(static_cast<Int>(config.sequence_length)),
+        h_(ds_ / 2),
+        k_(static_cast<Int>(config.candidates == Candidates::ranges     ? config.k
+                            : config.candidates == Candidates::adaptive ? config.initial_k
+                                                                        : 0)) {
+    for (const auto& row : r_) {
+      d_.emplace_back();
+      for (const auto& column : q_) d_.back().push_back(distance(row, column));
+    }
+  }
+
+  std::vector<Answer> run() {
+    std::vector<Answer> answers;
+    const auto frames = static_cast<Int>(q_.size());
+    for (Int n = h_; n - h_ + ds_ < frames; ++n) {
+      if (const auto answer = at(n)) answers.push_back(*answer);
+    }
+    return answers;
+  }
+
+ private:
+  Int offset(Int m, Int i) const {
+    return static_cast<Int>(std::floor(static_cast<long double>(2 * m * (i - h_) + ds_) /
+                                       static_cast<long double>(2 * ds_)));
+  }
+
+  Line score(Int n, Int q, Int rows) const {
+    Line best;
+    for (Int m = 0; m <= 20 * ds_; ++m) {
+      const double v = static_cast<double>(m);
+      const auto ds = static_cast<double>(ds_);
+      if (v < config_.vmin * ds - 1e-9 || v > config_.vmax * ds + 1e-9) continue;
+      double sum = 0.0;
+      for (Int i = 0; i <= ds_; ++i) {
+        const Int row = q + offset(m, i);
+        if (row < 0 || row >= rows) {
+          sum = none;
+          break;
+        }
+        sum += d_[static_cast<std::size_t>(row)][static_cast<std::size_t>(n - h_ + i)];
+      }
+      const double mean = sum / static_cast<double>(ds_ + 1);
+      if (mean < best.score) best = {mean, m};
+    }
+    return best;
+  }
+
+  double change_degree(Int n) const {
+    if (n < 11) return 1.0;
+    const auto q = [&](Int i) { return q_[static_cast<std::size_t>(i)]; };
+    double above = 0.0;
+    double below = 0.0;
+    for (Int i = n - 10; i <= n - 1; ++i) {
+      above += distance(q(n), q(i));
+      below += distance(q(n - 1), q(i - 1));
+    }
+    if (below == 0.0) return above == 0.0 ? 1.0 : none;
+    return above / below;
+  }
+
+  std::optional<Answer> at(Int n) {
+    const Int rows = closing_ ? std::max<Int>(0, n - static_cast<Int>(config_.exclude))
+                              : static_cast<Int>(r_.size());
+    const bool all = config_.candidates == Candidates::all;
+    const bool full = all || t_.empty() || matched_ % static_cast<Int>(config_.reinit) == 0;
+    const Int half = static_cast<Int>(config_.num) / 2;
+
+    std::set<Int> candidates;
+    if (full) {
+      for (Int q = 0; q < rows; ++q) candidates.insert(q);
+    } else {
+      for (Int k = 0; k < k_ && k < static_cast<Int>(t_.size()); ++k) {
+        const Int centre = t_[static_cast<std::size_t>(k)];
+        for (Int q = centre - half; q <= centre + half; ++q) {
+          if (q >= 0 && q < rows) candidates.insert(q);
+        }
+      }
+    }
+
+    std::map<Int, Line> scored;
+    for (const Int q : candidates) {
+      const Line line = score(n, q, rows);
+      if (line.score < none) scored[q] = line;
+    }
+    if (scored.empty()) {
+      t_.clear();
+      return std::nullopt;
+    }
+    std::vector<Int> sorted;
+    for (const auto& [q, line] : scored) sorted.push_back(q);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](Int a, Int b) { return scored[a].score < scored[b].score; });
+    const Int best = sorted.front();
+
+    double rival = none;
+    for (const auto& [q, line] : scored) {
+      if (2 * std::abs(q - best) > static_cast<Int>(config_.rwindow)) {
+        rival = std::min(rival, line.score);
+      }
+    }
+    if (full) last_full_rival_ = rival;
+    if (rival == none) rival = last_full_rival_;
+
+    const Line line = scored[best];
+    const Answer answer{n,
+                        best,
+                        line.score,
+                        rival == none ? std::nan("") : line.score / rival,
+                        static_cast<double>(line.m) / static_cast<double>(ds_),
+                        best + offset(line.m, ds_),
+                        static_cast<Int>(scored.size()),
+                        k_};
+
+    if (config_.candidates == Candidates::adaptive && !full) {
+      const double cd = change_degree(n);
+      if (cd >= 0.9 && cd <= 1.1) {
+        Int iml = 1;
+        while (std::abs(best - t_[static_cast<std::size_t>(iml - 1)]) > half) ++iml;
+        record_.push_back(iml);
+        if (record_.size() == 10) {
+          k_ = *std::max_element(record_.begin(), record_.end());
+          record_.clear();
+        }
+      } else {
+        k_ = static_cast<Int>(config_.initial_k);
+        record_.clear();
+      }
+    }
+    t_ = sorted;
+    ++matched_;
+    return answer;
+  }
+
+  bool closing_;
+  const Vectors& r_;
+  const Vectors& q_;
+  const MatcherConfig& config_;
+  Int ds_;
+  Int h_;
+  Int k_;
+  Int matched_ = 0;
+  double last_full_rival_ = none;
+  std::vector<Int> t_;
+  std::vector<Int> record_;
+  std::vector<std::vector<double>> d_;
+};
+
+}  // namespace
+
+std::vector<Answer> match(const Vectors& reference, const Vectors& query,
+                          const MatcherConfig& config) {
+  return Matcher(reference, query, config).run();
+}
+
+Vectors drive(std::uint32_t seed, std::size_t frames, std::size_t size, float noise) {
+  // The walk of one seed is the same whatever the noise: two drives of it pass the same places.
+  std::mt19937 walk(seed);
+  std::mt19937 blur(seed + 1000003U + static_cast<std::uint32_t>(noise * 1000.0F));
+  std::normal_distribution<float> normal;
+  Vectors drive;
+  std::vector<float> place(size, 0.0F);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    for (float& value : place) value = 0.8F * value + normal(walk);
+    std::vector<float> seen = place;
+    for (float& value : seen) value += noise * normal(blur);
+    double squares = 0.0;
+    for (const float value : seen) squares += double{value} * double{value};
+    for (float& value : seen) value = static_cast<float>(double{value} / std::sqrt(squares));
+    drive.push_back(seen);
+  }
+  return drive;
+}
+
+}  // namespace seqloop::oracle
