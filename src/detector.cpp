@@ -140,7 +140,10 @@ bool Detector::take_query(std::span<const float> descriptor) noexcept {
     return false;
   }
   if (config_.standardisation.on) {
-    statistics_.observe(descriptor, config_.standardisation.horizon);
+    if (statistics_.frames() == 0) {
+      statistics_.start_flat(descriptor, config_.standardisation.prior_frames);
+    }
+    statistics_.follow(descriptor, config_.standardisation.horizon);
     statistics_.standardise(descriptor, query);
   } else {
     std::ranges::copy(descriptor, query.begin());

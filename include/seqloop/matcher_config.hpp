@@ -26,10 +26,11 @@ struct Standardisation {
 
   /// Divide each feature by its deviation around its running mean. Off: descriptors as they come.
   bool on = true;
-  /// How many frames the map's statistics count for when a query drive starts from them; >= 1.
-  std::size_t prior_frames = 30;
+  /// How many frames that count for which a drive starts from: the map's statistics, or, without a
+  /// map, the first frame's; >= 1.
+  std::size_t prior_frames = 20;
   /// A frame never weighs less than 1/horizon, so that the statistics follow the day; >= 1, frames.
-  std::size_t horizon = 300;
+  std::size_t horizon = 100;
 };
 
 /// Everything a detector can be told, with the paper's values (Table 2) where it has any.
@@ -46,7 +47,7 @@ struct MatcherConfig {
   std::size_t reinit = 450;          ///< L: every L-th matched frame searches all rows; >= 1
   std::size_t exclude = 100;         ///< closing loops: newest frames that are no places; >= 1
   Standardisation standardisation;
-  float max_uniqueness = 0.93F;  ///< a match must be at least this unique; above 0 .. 1
+  float max_uniqueness = 0.94F;  ///< a match must be at least this unique; above 0 .. 1
 
   bool operator==(const MatcherConfig&) const = default;
 };
