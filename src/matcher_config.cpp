@@ -59,8 +59,8 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "standardise-prior", config.standardisation.prior_frames, 1, many);
   check_range(faults, "standardise-horizon", config.standardisation.horizon, 1, many);
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {
-    faults.push_back(
-        {"max-uniqueness", number(config.max_uniqueness) + " is not above 0 and at most 1"});
+    faults.push_back({"max-uniqueness", number(static_cast<double>(config.max_uniqueness)) +
+                                            " is not above 0 and at most 1"});
   }
   return faults;
 }

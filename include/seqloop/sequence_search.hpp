@@ -34,12 +34,14 @@ class SequenceSearch {
   [[nodiscard]] std::size_t line(std::size_t row) const noexcept { return lines_[row]; }
 
  private:
-  std::size_t score_line(const DifferenceSlices& slices, std::uint64_t oldest, CandidateRun block,
-                         std::size_t line, std::size_t rows) noexcept;
+  std::size_t score_line(CandidateRun block, std::size_t line, std::size_t rows) noexcept;
+  template <int Rows>
+  void score_tiles(CandidateRun run, std::size_t line) noexcept;
 
   const Trajectories* trajectories_;
-  std::span<float> scores_;         // [places]
-  std::span<std::uint32_t> lines_;  // [places]
+  std::span<float> scores_;          // [places]
+  std::span<std::uint32_t> lines_;   // [places]
+  std::span<const float*> columns_;  // [ds + 1], where the window's columns start in this frame
 };
 
 }  // namespace seqloop

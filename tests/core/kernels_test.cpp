@@ -29,7 +29,8 @@ TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
     for (std::size_t i = 0; i < size; ++i) {
       a[i] = normal(random);
       b[i] = normal(random);
-      sum += (double{a[i]} - double{b[i]}) * (double{a[i]} - double{b[i]});
+      sum += (static_cast<double>(a[i]) - static_cast<double>(b[i])) *
+             (static_cast<double>(a[i]) - static_cast<double>(b[i]));
     }
     EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
     EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
@@ -107,8 +108,9 @@ TEST(RunningStatistics, EqualTheBatchDefinition) {
   for (std::size_t d = 0; d < 3; ++d) {
     double mean = 0.0;
     double variance = 0.0;
-    for (const auto& frame : frames) mean += double{frame[d]} / 200.0;
-    for (const auto& frame : frames) variance += std::pow(double{frame[d]} - mean, 2.0) / 200.0;
+    for (const auto& frame : frames) mean += static_cast<double>(frame[d]) / 200.0;
+    for (const auto& frame : frames)
+      variance += std::pow(static_cast<double>(frame[d]) - mean, 2.0) / 200.0;
     EXPECT_NEAR(statistics.mean()[d], mean, 1e-9);
     EXPECT_NEAR(statistics.variance()[d], variance, 1e-9);
   }
@@ -211,7 +213,8 @@ TEST_F(Slices, HoldTheRightColumnAfterWrappingTwice) {
       for (std::size_t row = 0; row < 6; ++row) {
         double sum = 0.0;
         for (std::size_t d = 0; d < 20; ++d) {
-          sum += std::pow(double{drive_[kept][d]} - double{drive_[row][d]}, 2.0);
+          sum += std::pow(
+              static_cast<double>(drive_[kept][d]) - static_cast<double>(drive_[row][d]), 2.0);
         }
         EXPECT_NEAR(slices_.column(kept)[row], std::sqrt(sum), 1e-6);
       }

@@ -18,7 +18,7 @@ class NoAllocation : public testing::Test {
 TEST_F(NoAllocation, TheGuardFires) {
   const AllocationGuard guard;
   EXPECT_EQ(guard.count(), 0U);
-  volatile auto* with_new = new int(1);
+  int* volatile with_new = new int(1);
   EXPECT_EQ(guard.count(), 1U);
   delete with_new;
   void* volatile with_malloc = std::malloc(8);

@@ -16,7 +16,7 @@ constexpr double none = std::numeric_limits<double>::infinity();
 double distance(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0.0;
   for (std::size_t d = 0; d < a.size(); ++d) {
-    const double difference = double{a[d]} - double{b[d]};
+    const double difference = static_cast<double>(a[d]) - static_cast<double>(b[d]);
     sum += difference * difference;
   }
   return std::sqrt(sum);
@@ -200,8 +200,10 @@ Vectors drive(std::uint32_t seed, std::size_t frames, std::size_t size, float no
     std::vector<float> seen = place;
     for (float& value : seen) value += noise * normal(blur);
     double squares = 0.0;
-    for (const float value : seen) squares += double{value} * double{value};
-    for (float& value : seen) value = static_cast<float>(double{value} / std::sqrt(squares));
+    for (const float value : seen)
+      squares += static_cast<double>(value) * static_cast<double>(value);
+    for (float& value : seen)
+      value = static_cast<float>(static_cast<double>(value) / std::sqrt(squares));
     drive.push_back(seen);
   }
   return drive;

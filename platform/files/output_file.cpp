@@ -1,0 +1,130 @@
+#include "files/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::files {
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{64} * 1024;
+constexpr int most_tries = 100;
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::string& name) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw IoError(name, "cannot be written: " + reason(errno));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), buffer_(buffer_bytes) {
+  if (path_.empty() || !path_.has_filename())
+    throw SetupError(
+        Fault{"output file '" + path_.string() + "'", "names no file", "give a file name"});
+  const std::string shown = path_.string();
+  std::error_code error;
+  if (std::filesystem::is_symlink(path_, error)) {
+    const auto target = std::filesystem::weakly_canonical(path_, error);
+    if (!error) path_ = target;
+  }
+  const auto status = std::filesystem::status(path_, error);
+  if (std::filesystem::is_directory(status))
+    throw SetupError(Fault{shown, "is a folder", "give the name of a file"});
+
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0)
+      throw SetupError(Fault{shown, "cannot be opened for writing: " + reason(errno)});
+    return;
+  }
+  // Renaming would replace a file that its owner has protected.
+  if (std::filesystem::exists(status) && ::access(path_.c_str(), W_OK) != 0)
+    throw SetupError(Fault{shown, "exists and may not be written: " + reason(errno),
+                           "choose another name or change its permissions"});
+  open_beside();
+}
+
+void OutputFile::open_beside() {
+  auto folder = path_.parent_path();
+  if (folder.empty()) folder = ".";
+  std::error_code error;
+  if (!std::filesystem::exists(folder, error))
+    throw SetupError(
+        {path_.string(), "its folder does not exist", "create " + folder.string() + " first"});
+  if (!std::filesystem::is_directory(folder, error))
+    throw SetupError(Fault{path_.string(), folder.string() + " is not a folder"});
+
+  const std::string stem =
+      "." + path_.filename().string() + ".partial-" + std::to_string(::getpid());
+  for (int attempt = 0; attempt < most_tries; ++attempt) {
+    partial_ = folder / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
+    descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) return;
+    if (errno != EEXIST) break;
+  }
+  throw SetupError(Fault{path_.string(), "cannot be created: " + reason(errno),
+                         "choose a folder that may be written"});
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  if (!partial_.empty()) ::unlink(partial_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    if (buffered_ == buffer_.size()) flush();
+    const std::size_t count = std::min(bytes.size(), buffer_.size() - buffered_);
+    std::memcpy(buffer_.data() + buffered_, bytes.data(), count);
+    buffered_ += count;
+    bytes = bytes.subspan(count);
+  }
+}
+
+void OutputFile::overwrite_start(std::span<const std::byte> bytes) {
+  flush();
+  const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), 0);
+  if (written < 0) throw IoError(path_.string(), "cannot be written again: " + reason(errno));
+  if (static_cast<std::size_t>(written) != bytes.size())
+    throw IoError(path_.string(), "cannot be written: the disk took only a part");
+}
+
+void OutputFile::flush() {
+  const std::size_t count = std::exchange(buffered_, 0);
+  write_all(descriptor_, std::span(buffer_).first(count), path_.string());
+}
+
+void OutputFile::commit() {
+  flush();
+  if (!partial_.empty() && ::fsync(descriptor_) != 0)
+    throw IoError(path_.string(), "cannot be written to the disk: " + reason(errno));
+  // After a failed close nobody knows what reached the disk, so that is a failed write too.
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  const int close_error = errno;
+  if (partial_.empty()) {
+    if (closed != 0) throw IoError(path_.string(), "cannot be closed: " + reason(close_error));
+    return;
+  }
+  if (closed == 0 && std::rename(partial_.c_str(), path_.c_str()) == 0) return;
+  const int error = closed != 0 ? close_error : errno;
+  ::unlink(partial_.c_str());
+  throw IoError(path_.string(), "cannot be completed: " + reason(error));
+}
+
+}  // namespace seqloop::files

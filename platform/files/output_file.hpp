@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace seqloop::files {
+
+/// A write that failed while running (disk full, drive gone). `what()` is `WHAT: WHY`.
+class IoError : public std::runtime_error {
+ public:
+  IoError(const std::string& what, const std::string& why) : runtime_error(what + ": " + why) {}
+};
+
+/// A file that appears under its name only when it is complete.
+///
+/// Until `commit` everything goes to `.NAME.partial-PID` in the same folder; the destructor removes
+/// that file if there was no commit, and a process that is killed leaves nothing else behind. A
+/// name that exists and is no regular file (/dev/null, a pipe) is written directly. A symbolic link
+/// is followed, so that the file it points to is replaced and not the link.
+class OutputFile {
+ public:
+  /// Throws SetupError: the folder is missing or not writable, the name is a folder, a file that
+  /// may not be written.
+  explicit OutputFile(std::filesystem::path path);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  OutputFile(OutputFile&&) = delete;
+  OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();
+
+  /// Appends. Throws IoError. Allocates: never (64 KiB are taken at construction).
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+  /// Replaces bytes from the start of the file on, which were written before; the place at which
+  /// `write` goes on stays. Throws IoError (a pipe cannot do it).
+  void overwrite_start(std::span<const std::byte> bytes);
+
+  /// Hands what is buffered to the system, so that readers of a pipe see it. Throws IoError.
+  void flush();
+
+  /// Everything to the disk, then under its own name, replacing what was there. The last call.
+  /// Throws IoError.
+  void commit();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  void open_beside();
+
+  std::filesystem::path path_;
+  std::filesystem::path partial_;  ///< empty when the file is written directly
+  std::vector<std::byte> buffer_;
+  std::size_t buffered_ = 0;  ///< bytes of buffer_ in use
+  int descriptor_ = -1;
+};
+
+}  // namespace seqloop::files

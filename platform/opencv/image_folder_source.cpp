@@ -1,0 +1,185 @@
+#include "opencv/image_folder_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "opencv/detail/natural_order.hpp"
+#include "opencv/detail/picture_file.hpp"
+#include "opencv/detail/picture_view.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::opencv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 9> extensions{".jpg", ".jpeg", ".png",  ".bmp", ".pgm",
+                                                     ".ppm", ".tif",  ".tiff", ".webp"};
+constexpr std::uintmax_t most_file_bytes = std::uintmax_t{1} << 30;
+constexpr std::size_t most_named = 3;  // files that a note names before it says "..."
+
+struct Listing {
+  std::vector<std::string> pictures;
+  std::vector<std::string> others;
+};
+
+/// A dangling link to a picture stays in the drive, as an unreadable frame: the numbers of the
+/// frames behind it do not move.
+bool is_picture(const fs::directory_entry& entry) {
+  if (entry.path().filename().string().starts_with('.') || !has_image_extension(entry.path()))
+    return false;
+  std::error_code error;
+  const fs::file_type type = entry.status(error).type();
+  return type == fs::file_type::regular || type == fs::file_type::not_found;
+}
+
+Listing list_folder(const fs::path& folder) {
+  const std::string name = folder.string();
+  std::error_code error;
+  const auto status = fs::status(folder, error);
+  if (!fs::exists(status)) throw SetupError(Fault{name, "does not exist", "check the name"});
+  if (!fs::is_directory(status)) throw SetupError(Fault{name, "is not a folder"});
+  Listing listing;
+  fs::directory_iterator entries(folder, error);
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error))
+    (is_picture(*entries) ? listing.pictures : listing.others)
+        .push_back(entries->path().filename().string());
+  if (error)
+    throw SetupError(Fault{name, "cannot be read: " + error.message(), "check its permissions"});
+  if (listing.pictures.empty())
+    throw SetupError(
+        {name, "holds no pictures (" + std::to_string(listing.others.size()) + " other files)",
+         "name a folder with jpg, png, bmp, pgm, ppm, tif or webp files"});
+  std::sort(listing.pictures.begin(), listing.pictures.end(), natural_less);
+  std::sort(listing.others.begin(), listing.others.end(), natural_less);
+  return listing;
+}
+
+std::string size_text(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+}  // namespace
+
+bool has_image_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+class ImageFolderSource::Impl {
+ public:
+  Impl(fs::path folder, bool gray, double frames_per_second)
+      : folder_(std::move(folder)),
+        listing_(list_folder(folder_)),
+        flags_(gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR),
+        frames_per_second_(frames_per_second) {
+    if (!std::isfinite(frames_per_second_) || frames_per_second_ <= 0.0)
+      throw SetupError(Fault{"frame rate", "is not a positive number"});
+  }
+
+  [[nodiscard]] Grab grab(Frame& frame) noexcept {
+    frame = Frame{};
+    frame.index = next_;
+    frame.time_s = static_cast<double>(next_) / frames_per_second_;
+    if (next_ == listing_.pictures.size()) return Grab::end;
+    const std::string& name = listing_.pictures[next_++];
+    try {
+      fault_.clear();
+      std::string_view reason = read_picture(folder_ / name);
+      if (reason.empty()) {
+        count_size(name);
+        frame.image = view(picture_);
+        return Grab::frame;
+      }
+      fault_.append(name).append(": ").append(reason);
+      frame.fault = fault_;
+    } catch (...) {
+      frame.fault = "out of memory";
+    }
+    return Grab::unreadable;
+  }
+
+  [[nodiscard]] std::size_t count() const noexcept { return listing_.pictures.size(); }
+
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> lines;
+    if (const auto& others = listing_.others; !others.empty()) {
+      std::string line = std::to_string(others.size()) +
+                         (others.size() == 1 ? " other file ignored: " : " other files ignored: ");
+      for (std::size_t i = 0; i < std::min(others.size(), most_named); ++i)
+        line += (i == 0 ? "" : ", ") + others[i];
+      lines.push_back(line + (others.size() > most_named ? ", ..." : ""));
+    }
+    if (odd_sizes_ > 0)
+      lines.push_back(std::to_string(odd_sizes_) + " of " + std::to_string(next_) +
+                      " pictures differ in size from the first (" + size_text(first_size_) +
+                      "): " + odd_example_ + (odd_sizes_ > 1 ? ", ..." : ""));
+    return lines;
+  }
+
+ private:
+  /// Reads into picture_. @return why it could not; empty when it could
+  [[nodiscard]] std::string_view read_picture(const fs::path& path) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) return "the file is not there or cannot be read";
+    if (size > most_file_bytes) return "the file is larger than 1 GiB";
+    file_.resize(static_cast<std::size_t>(size));
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(static_cast<char*>(static_cast<void*>(file_.data())),
+                static_cast<std::streamsize>(file_.size()));
+    if (!stream) return "the file cannot be read";
+    if (const std::string_view fault = picture_file_fault(file_); !fault.empty()) return fault;
+    // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
+    picture_.release();
+    try {
+      picture_ = cv::imdecode(file_, flags_);
+    } catch (const cv::Exception&) {  // sizes that OpenCV refuses
+    }
+    return picture_.empty() ? "the file is no readable picture" : "";
+  }
+
+  void count_size(const std::string& name) {
+    if (first_size_.empty()) first_size_ = picture_.size();
+    if (picture_.size() == first_size_) return;
+    if (odd_sizes_++ == 0) odd_example_ = name + " (" + size_text(picture_.size()) + ")";
+  }
+
+  fs::path folder_;
+  Listing listing_;
+  int flags_;
+  double frames_per_second_;
+  std::size_t next_ = 0;
+  std::vector<std::uint8_t> file_;
+  cv::Mat picture_;
+  std::string fault_;
+  cv::Size first_size_;
+  std::size_t odd_sizes_ = 0;
+  std::string odd_example_;
+};
+
+ImageFolderSource::ImageFolderSource(const std::filesystem::path& folder, bool gray,
+                                     double frames_per_second)
+    : impl_(std::make_unique<Impl>(folder, gray, frames_per_second)) {}
+
+ImageFolderSource::~ImageFolderSource() = default;
+
+Grab ImageFolderSource::grab(Frame& frame) noexcept { return impl_->grab(frame); }
+
+std::optional<std::uint64_t> ImageFolderSource::frame_count() const noexcept {
+  return impl_->count();
+}
+
+std::vector<std::string> ImageFolderSource::notes() const { return impl_->notes(); }
+
+}  // namespace seqloop::opencv

@@ -1,0 +1,38 @@
+#include "opencv/source.hpp"
+
+#include <string>
+
+#include "opencv/image_folder_source.hpp"
+#include "opencv/video_source.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::opencv {
+
+std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path,
+                                         const SourceOptions& options) {
+  const std::string name = path.string();
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  switch (status.type()) {
+    case std::filesystem::file_type::directory:
+      return std::make_unique<ImageFolderSource>(path, options.gray, options.frames_per_second);
+    case std::filesystem::file_type::regular:
+      if (has_image_extension(path))
+        throw SetupError(
+            Fault{name, "is a single picture", "name the folder that holds the drive"});
+      return std::make_unique<VideoSource>(path, options.gray);
+    case std::filesystem::file_type::character:
+      throw SetupError(Fault{name, "live cameras are not supported yet",
+                             "record the drive first and name the video file or image folder"});
+    case std::filesystem::file_type::not_found:
+      throw SetupError(Fault{name, "does not exist", "check the name"});
+    case std::filesystem::file_type::none:
+    case std::filesystem::file_type::unknown:
+      throw SetupError(Fault{name, "cannot be read: " + error.message(), "check the permissions"});
+    default:
+      throw SetupError(
+          Fault{name, "is neither a folder nor a file", "name an image folder or a video"});
+  }
+}
+
+}  // namespace seqloop::opencv

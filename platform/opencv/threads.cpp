@@ -1,0 +1,9 @@
+#include "opencv/threads.hpp"
+
+#include <opencv2/core/utility.hpp>
+
+namespace seqloop::opencv {
+
+void use_threads(int count) { cv::setNumThreads(count); }
+
+}  // namespace seqloop::opencv

@@ -1,0 +1,128 @@
+#include "opencv/video_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "opencv/detail/picture_view.hpp"
+#include "opencv/detail/quiet_log.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::opencv {
+namespace {
+
+constexpr double default_rate = 25.0;   // frames a second, where the file does not tell
+constexpr double largest_count = 1e12;  // some backends report 2^63 for "unknown"
+
+/// Left to choose, OpenCV also takes a file for an image sequence and looks for cameras on the USB.
+constexpr std::array<cv::VideoCaptureAPIs, 3> backends{cv::CAP_FFMPEG, cv::CAP_GSTREAMER,
+                                                       cv::CAP_OPENCV_MJPEG};
+
+}  // namespace
+
+class VideoSource::Impl {
+ public:
+  Impl(const std::filesystem::path& file, bool gray) : gray_(gray) {
+    const QuietLog quiet;
+    const std::string name = file.string();
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status))
+      throw SetupError(Fault{name, "does not exist", "check the name"});
+    if (!std::filesystem::is_regular_file(status)) throw SetupError(Fault{name, "is not a file"});
+    try {
+      if (std::none_of(backends.begin(), backends.end(),
+                       [&](cv::VideoCaptureAPIs backend) { return capture_.open(name, backend); }))
+        throw SetupError(
+            Fault{name, "is not a video that OpenCV can read",
+                  "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
+      read_properties();
+      pending_ = read();  // some files open well and hold no frame
+    } catch (const cv::Exception& failure) {
+      throw SetupError(Fault{name, "is not a video that OpenCV can read (" + failure.err + ")"});
+    }
+    if (!pending_) throw SetupError(Fault{name, "holds no frame that can be decoded"});
+  }
+
+  [[nodiscard]] Grab grab(Frame& frame) noexcept {
+    frame = Frame{};
+    frame.index = next_;
+    try {
+      if (!pending_ && !ended_) ended_ = !read();
+      if (!ended_) frame.image = view(gray_ && picture_.channels() == 3 ? to_gray() : picture_);
+    } catch (...) {  // the backend gave up
+      ended_ = true;
+    }
+    frame.time_s = time_s_;
+    pending_ = false;
+    if (ended_) return Grab::end;
+    ++next_;
+    return Grab::frame;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> declared() const noexcept { return declared_; }
+
+  [[nodiscard]] std::vector<std::string> notes() const {
+    if (!ended_ || !declared_ || next_ >= *declared_) return {};
+    return {"the video ended after " + std::to_string(next_) + " of the " +
+            std::to_string(*declared_) + " frames that it declares"};
+  }
+
+ private:
+  void read_properties() {
+    const double rate = capture_.get(cv::CAP_PROP_FPS);
+    if (std::isfinite(rate) && rate > 0.0) rate_ = rate;
+    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    if (count >= 1.0 && count < largest_count) declared_ = static_cast<std::uint64_t>(count);
+  }
+
+  /// Decodes into picture_ and moves the clock. @return false at the end
+  [[nodiscard]] bool read() {
+    if (!capture_.read(picture_) || picture_.empty()) return false;
+    if (picture_.type() != CV_8UC1 && picture_.type() != CV_8UC3) return false;
+    const double stamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
+    if (first_) {
+      first_ = false;
+      start_s_ = std::isfinite(stamp) ? stamp : 0.0;
+      return true;
+    }
+    const double since_start = stamp - start_s_;
+    time_s_ =
+        std::isfinite(since_start) && since_start > time_s_ ? since_start : time_s_ + 1.0 / rate_;
+    return true;
+  }
+
+  [[nodiscard]] const cv::Mat& to_gray() {
+    cv::cvtColor(picture_, gray_picture_, cv::COLOR_BGR2GRAY);
+    return gray_picture_;
+  }
+
+  cv::VideoCapture capture_;
+  cv::Mat picture_;
+  cv::Mat gray_picture_;
+  bool gray_;
+  bool pending_ = false;  ///< picture_ was read ahead and not handed over yet
+  bool first_ = true;
+  bool ended_ = false;
+  double rate_ = default_rate;
+  double start_s_ = 0.0;  ///< the container's time of the first frame
+  double time_s_ = 0.0;
+  std::uint64_t next_ = 0;
+  std::optional<std::uint64_t> declared_;
+};
+
+VideoSource::VideoSource(const std::filesystem::path& file, bool gray)
+    : impl_(std::make_unique<Impl>(file, gray)) {}
+
+VideoSource::~VideoSource() = default;
+
+Grab VideoSource::grab(Frame& frame) noexcept { return impl_->grab(frame); }
+
+std::optional<std::uint64_t> VideoSource::frame_count() const noexcept { return impl_->declared(); }
+
+std::vector<std::string> VideoSource::notes() const { return impl_->notes(); }
+
+}  // namespace seqloop::opencv

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "seqloop/frame_source.hpp"
+
+namespace seqloop::opencv {
+
+/// A drive as a video file, read by the first of OpenCV's backends that can: FFmpeg, GStreamer, the
+/// built-in motion JPEG.
+///
+/// Times are the container's own where they rise, else index / frame rate. A file that is broken in
+/// the middle ends there, or goes on with damaged pictures, as the backend has it: it tells
+/// neither. When fewer frames came than the file promised, `notes` says so.
+class VideoSource : public FrameSource {
+ public:
+  /// @param gray hand over grey pictures
+  /// Throws SetupError: not there, not a file, not a video, no frame in it.
+  VideoSource(const std::filesystem::path& file, bool gray);
+  VideoSource(const VideoSource&) = delete;
+  VideoSource& operator=(const VideoSource&) = delete;
+  VideoSource(VideoSource&&) = delete;
+  VideoSource& operator=(VideoSource&&) = delete;
+  ~VideoSource() override;
+
+  /// Allocates: the backend does.
+  [[nodiscard]] Grab grab(Frame& frame) noexcept override;
+
+  /// As the container declares it, which for some formats is an estimate; nothing where it declares
+  /// none.
+  [[nodiscard]] std::optional<std::uint64_t> frame_count() const noexcept override;
+
+  [[nodiscard]] std::vector<std::string> notes() const override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seqloop::opencv

@@ -1,0 +1,47 @@
+// What `plan` says against what the process really takes.
+#include <unistd.h>
+
+#include <fstream>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+/// Resident memory of this process.
+double resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  double pages = 0.0;
+  statm >> pages >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(Memory, ThePlanIsWhatTheProcessGrowsBy) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's shadow memory counts as resident";
+#endif
+  const Capacity capacity{20'000, 735};
+  MatcherConfig config;
+  config.sequence_length = 100;
+  config.use = Use::close_loops;
+  const double planned = static_cast<double>(PlaceMap::bytes_needed(capacity) +
+                                             Detector::bytes_needed(config, capacity));
+  const oracle::Vectors drive = oracle::drive(1, 300, 735);
+  const double before = resident_bytes();
+  PlaceMap map(capacity);
+  Detector detector(config, map);
+  const double built = resident_bytes() - before;
+  for (const auto& descriptor : drive) (void)detector.step(descriptor);
+  const double stepped = resident_bytes() - before;
+
+  RecordProperty("planned", std::to_string(planned));
+  RecordProperty("grown", std::to_string(stepped));
+  std::printf("planned %.0f bytes, grown by %.0f when built and %.0f after 300 steps\n", planned,
+              built, stepped);
+  constexpr double slack = 1048576.0;
+  EXPECT_NEAR(stepped, planned, 0.05 * planned + slack);
+  EXPECT_NEAR(stepped, built, slack) << "every page is there before the first step";
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,26 @@
+#!/bin/sh
+# Builds and runs the program that README.md shows, against an installed copy, as a user would.
+# Usage: outside_program.sh SOURCE BUILD CXX CXX_FLAGS DRIVE_MAKER
+set -eu
+source=$1 build=$2 cxx=$3 flags=$4 maker=$5
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake --install "$build" --prefix "$work/installed" >/dev/null
+
+# The first ```cmake and the first ```cpp block of the README.
+block() { awk -v kind="$1" '$0 == "```" kind && !done {on = 1; next} $0 == "```" && on {on = 0; done = 1} on' "$source/README.md"; }
+mkdir "$work/user"
+block cmake >"$work/user/CMakeLists.txt"
+block cpp >"$work/user/main.cpp"
+[ -s "$work/user/main.cpp" ] && [ -s "$work/user/CMakeLists.txt" ]
+
+cmake -S "$work/user" -B "$work/user/build" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$work/installed" \
+  >"$work/log" || { cat "$work/log"; exit 1; }
+cmake --build "$work/user/build" >"$work/log" || { cat "$work/log"; exit 1; }
+
+"$maker" --out "$work/drive" --frames 400 --drives loop --size 160x90 2>/dev/null
+"$work/user/build/loops" "$work/drive/drive" >"$work/loops.txt"
+tail -3 "$work/loops.txt"
+[ "$(grep -c 'is place' "$work/loops.txt")" -ge 20 ] || { echo "hardly any loop found"; exit 1; }
+"$work/installed/bin/seqloop" --version

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Checks which room includes what (see the table in README.md), and that the check can fail.
+
+Usage: rooms.py ROOT    exit code 1 and a line a fault where a file looks into a room it must not.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+# Of the C++ library, what the algorithm has no business with: files, threads, the terminal.
+OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_variable", "future",
+           "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
+
+
+def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
+    room = file.parts[0]
+    world = include.split("/")[0]
+    library_header = "/" not in include and "." not in include
+    if room in ("include", "src"):
+        if library_header:
+            return not quoted and include not in OUTSIDE
+        return world == "seqloop" and quoted or room == "src" and world == "Eigen"
+    if room == "platform":
+        if not quoted:
+            return True
+        return world in ("seqloop", file.parts[1])
+    return True
+
+
+def faults(root: pathlib.Path) -> list[str]:
+    found = []
+    for room in ("include", "src", "platform"):
+        for path in sorted((root / room).rglob("*.[ch]pp")):
+            file = path.relative_to(root)
+            for line in path.read_text(encoding="utf-8").splitlines():
+                match = re.match(r'\s*#\s*include\s*([<"])([^>"]+)[>"]', line)
+                if match and not allowed(file, match[2], match[1] == '"'):
+                    found.append(f"{file} must not include {match[2]}")
+    return found
+
+
+def prove_that_it_can_fail() -> None:
+    bad = {"include/seqloop/a.hpp": "#include <opencv2/core.hpp>",
+           "include/seqloop/b.hpp": "#include <Eigen/Core>",
+           "src/c.cpp": "#include <thread>",
+           "src/d.cpp": "  #  include <unistd.h>",
+           "src/e.cpp": '#include "opencv/dnn_describer.hpp"',
+           "platform/opencv/f.cpp": '#include "files/npy_file.hpp"',
+           "platform/files/g.hpp": '#include "evaluation/csv.hpp"'}
+    good = {"src/h.cpp": '#include <Eigen/Core>\n#include <vector>\n#include "seqloop/frame.hpp"',
+            "platform/opencv/i.cpp": '#include <opencv2/core.hpp>\n#include "opencv/detail/j.hpp"'}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in {**bad, **good}.items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        found = [fault.split()[0] for fault in faults(pathlib.Path(folder))]
+        assert sorted(found) == sorted(bad), found
+
+
+if __name__ == "__main__":
+    prove_that_it_can_fail()
+    found = faults(pathlib.Path(sys.argv[1]))
+    print("\n".join(found) if found else "every room keeps to itself")
+    sys.exit(1 if found else 0)

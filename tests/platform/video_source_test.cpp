@@ -1,0 +1,88 @@
+#include "opencv/video_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/videoio.hpp>
+
+#include "expect_setup_error.hpp"
+#include "opencv/silence.hpp"
+#include "platform/pictures.hpp"
+
+namespace seqloop::opencv {
+namespace {
+
+using test::says;
+using test::setup_error;
+using test::TemporaryFolder;
+
+constexpr int frames = 12;
+
+/// A motion JPEG of flat pictures that grow brighter, 20 frames a second.
+std::filesystem::path make_video(const TemporaryFolder& folder) {
+  const auto path = folder.path() / "drive.avi";
+  cv::VideoWriter writer(path.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 20.0,
+                         cv::Size(64, 48));
+  for (int i = 0; i < frames; ++i)
+    writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(20.0 * i)));
+  return path;
+}
+
+std::string open_error(const std::filesystem::path& path) {
+  return setup_error([&] { VideoSource source(path, false); });
+}
+
+class VideoSourceTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { silence_opencv(); }
+};
+
+TEST_F(VideoSourceTest, HandsOverEveryFrameWithItsTime) {
+  const TemporaryFolder folder;
+  for (const bool gray : {false, true}) {
+    VideoSource source(make_video(folder), gray);
+    EXPECT_EQ(source.frame_count(), static_cast<std::uint64_t>(frames));
+    Frame frame;
+    for (int i = 0; i < frames; ++i) {
+      ASSERT_EQ(source.grab(frame), Grab::frame);
+      EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+      EXPECT_NEAR(frame.time_s, 0.05 * i, 1e-6);
+      EXPECT_EQ(frame.image.width, 64);
+      EXPECT_EQ(frame.image.height, 48);
+      EXPECT_EQ(frame.image.format, gray ? PixelFormat::gray8 : PixelFormat::bgr8);
+      EXPECT_NEAR(frame.image.data[0], 20 * i, 4);
+    }
+    EXPECT_EQ(source.grab(frame), Grab::end);
+    EXPECT_EQ(source.grab(frame), Grab::end);
+    EXPECT_TRUE(source.notes().empty());
+  }
+}
+
+// Bad input: a video that was cut off.
+TEST_F(VideoSourceTest, NotesThatAVideoEndedEarly) {
+  const TemporaryFolder folder;
+  const std::string whole = test::read_all(make_video(folder));
+  const std::size_t cut = whole.find("movi") + 4 + (whole.size() - whole.find("movi")) / 2;
+  VideoSource source(folder.write("cut.avi", whole.substr(0, cut)), false);
+  Frame frame;
+  int count = 0;
+  while (source.grab(frame) == Grab::frame) ++count;
+  EXPECT_GT(count, 0);
+  EXPECT_LT(count, frames);
+  ASSERT_EQ(source.notes().size(), 1U);
+  EXPECT_TRUE(says(source.notes()[0], "ended after " + std::to_string(count) + " of the 12"));
+}
+
+// Bad input: everything that is no video.
+TEST_F(VideoSourceTest, RefusesWhatIsNoVideo) {
+  const TemporaryFolder folder;
+  const std::string whole = test::read_all(make_video(folder));
+  const std::string headers = whole.substr(0, whole.find("movi") + 4);
+  EXPECT_TRUE(says(open_error(folder.path() / "none.mp4"), "does not exist"));
+  EXPECT_TRUE(says(open_error(folder.path()), "is not a file"));
+  EXPECT_TRUE(says(open_error(folder.write("text.mp4", "hello")), "is not a video"));
+  EXPECT_TRUE(says(open_error(folder.write("empty.avi", "")), "is not a video"));
+  EXPECT_FALSE(open_error(folder.write("headers.avi", headers)).empty());
+}
+
+}  // namespace
+}  // namespace seqloop::opencv

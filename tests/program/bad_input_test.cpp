@@ -1,0 +1,210 @@
+// What a user gets wrong: each is exit code 2, a line that says what, why and what to do, and no
+// output file.
+#include <limits>
+
+#include "core/oracle.hpp"
+#include "files/npy_file.hpp"
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+class BadInput : public test::Program {
+ protected:
+  void SetUp() override {
+    write_npy("good.npy", oracle::drive(1, 60, 12));
+    write_npy("wide.npy", oracle::drive(1, 60, 13));
+    write_npy("short.npy", oracle::drive(1, 10, 12));
+  }
+
+  void write_npy(const std::string& name, const oracle::Vectors& rows) const {
+    files::NpyWriter writer(file(name), rows.front().size());
+    for (const auto& row : rows) writer.append(row);
+    writer.commit();
+  }
+
+  /// A NumPy file with a header of one's own.
+  void write_raw_npy(const std::string& name, const std::string& header,
+                     const std::string& data) const {
+    std::string padded = header;
+    padded.resize(117, ' ');
+    padded += '\n';
+    folder_.write(name, std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + padded + data);
+  }
+
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& words) const {
+    SCOPED_TRACE(arguments);
+    const test::Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    for (const std::string& word : words) {
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << "no '" << word << "' in:\n"
+                                                           << outcome.err;
+    }
+    EXPECT_TRUE(outcome.err.starts_with("seqloop: ")) << outcome.err;
+    EXPECT_FALSE(exists("m.csv"));
+    EXPECT_FALSE(exists("d.npy"));
+    EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
+  }
+
+  void expect_match_refused(const std::string& arguments,
+                            const std::vector<std::string>& words) const {
+    expect_refused("match --method seqcnnslam --out m.csv " + arguments, words);
+  }
+};
+
+TEST_F(BadInput, NpyFiles) {
+  const std::string q = "--reference good.npy --query ";
+  expect_match_refused(q + "none.npy", {"none.npy"});
+  folder_.write("text.npy", "not numbers");
+  expect_match_refused(q + "text.npy", {"text.npy", ".npy"});
+  std::string good = test::read_all(file("good.npy"));
+  folder_.write("cut.npy", std::string_view(good).substr(0, good.size() - 5));
+  expect_match_refused(q + "cut.npy", {"cut.npy"});
+  write_raw_npy("double.npy", "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }",
+                std::string(16, '\0'));
+  expect_match_refused(q + "double.npy", {"<f8", "float32"});
+  write_raw_npy("fortran.npy", "{'descr': '<f4', 'fortran_order': True, 'shape': (1, 2), }",
+                std::string(8, '\0'));
+  expect_match_refused(q + "fortran.npy", {"ortran"});
+  write_raw_npy("empty.npy", "{'descr': '<f4', 'fortran_order': False, 'shape': (0, 2), }", "");
+  expect_match_refused(q + "empty.npy", {"empty.npy"});
+  write_raw_npy("flat.npy", "{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }",
+                std::string(8, '\0'));
+  expect_match_refused(q + "flat.npy", {"flat.npy"});
+  oracle::Vectors broken = oracle::drive(1, 60, 12);
+  broken[17][5] = std::numeric_limits<float>::quiet_NaN();
+  write_npy("nan.npy", broken);
+  expect_match_refused(q + "nan.npy", {"nan.npy", "17", "5"});
+  expect_match_refused(q + "wide.npy", {"12", "13", "same model"});
+  expect_match_refused("--reference none.npy --query also-none.npy", {"none.npy", "also-none.npy"});
+}
+
+TEST_F(BadInput, Numbers) {
+  const std::string drives = "--reference good.npy --query good.npy ";
+  expect_match_refused(drives + "--ds 0", {"ds: 0"});
+  expect_match_refused(drives + "--ds 60", {"ds", "61", "60"});
+  expect_match_refused("--reference good.npy --query short.npy", {"ds", "21", "10"});
+  expect_match_refused("--reference short.npy --query good.npy", {"ds", "17", "10"});
+  expect_match_refused("--query good.npy", {"exclude", "100"});
+  expect_match_refused(drives + "--vmin 1.3", {"vmin", "1.3", "vmax", "1.2"});
+  expect_match_refused(drives + "--ds 10 --vmin 1.01 --vmax 1.02", {"velocity", "widen"});
+  expect_match_refused(drives + "--k 0", {"k: 0"});
+  expect_match_refused(drives + "--num 0", {"num: 0"});
+  expect_match_refused(drives + "--ds abc", {"ds", "'abc'"});
+  expect_match_refused(drives + "--ds -3", {"ds", "'-3'"});
+  expect_match_refused(drives + "--vmin nan", {"vmin", "'nan'"});
+  expect_match_refused(drives + "--standardise maybe", {"standardise", "'maybe'", "on"});
+  expect_refused("match --method a-seqcnslam --out m.csv " + drives,
+                 {"did you mean 'a-seqcnnslam'"});
+  expect_refused("match --method seqslam --out m.csv " + drives, {"seqslam"});
+}
+
+TEST_F(BadInput, EveryFaultAtOnce) {
+  expect_match_refused(
+      "--reference none.npy --query good.npy --ds 0 --k 0 --vmin 2 --num x --what 1",
+      {"none.npy", "ds: 0", "k: 0", "num: 'x'", "--what"});
+  const test::Outcome outcome = run("match");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* flag : {"--method", "--query", "--out"}) {
+    EXPECT_NE(outcome.err.find(flag), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(BadInput, OddAndSmallestSequenceLengthsWork) {
+  for (const char* ds : {"1", "2", "3", "59"}) {
+    const test::Outcome outcome =
+        run(std::string("match --method seqcnnslam --reference good.npy --query good.npy "
+                        "--out m.csv --ds ") +
+            ds);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+}
+
+TEST_F(BadInput, ConfigurationFiles) {
+  const std::string match = "--reference good.npy --query good.npy --config c.toml ";
+  folder_.write("c.toml", "initial_k = 5\nds = \"twenty\"\nvmin = 5.0\n[budget]\ntotals = 3\n");
+  expect_match_refused(match, {"c.toml:1", "'initial_k'", "did you mean 'initial-k'", "c.toml:2",
+                               "'ds' must be a whole number, not string", "c.toml:5",
+                               "'budget-totals'", "did you mean 'budget-total'"});
+  folder_.write("c.toml", "vmin = 5.0\nk = 0\n");
+  expect_match_refused(match, {"vmin: 5", "k: 0"});
+  folder_.write("c.toml", "ds = [1\n");
+  expect_match_refused(match, {"c.toml:", "not TOML"});
+  folder_.write("c.toml", "ds = 2.5\nstandardise = 3\npaper = \"yes\"\nmethod = 1\n");
+  expect_match_refused(match, {"'ds'", "'standardise'", "'paper'", "'method'"});
+  expect_match_refused("--reference good.npy --query good.npy --config none.toml", {"none.toml"});
+}
+
+TEST_F(BadInput, CommandLines) {
+  expect_refused("", {"subcommand"});
+  expect_refused("fly", {"fly"});
+  expect_refused("match --quer good.npy", {"did you mean --query"});
+  expect_refused("match --ds", {"ds"});
+  expect_refused("match --ds 10 --ds 20", {"ds: given more than once"});
+  expect_refused("plan --max-places 0", {"places"});
+}
+
+TEST_F(BadInput, Sources) {
+  std::filesystem::create_directory(file("empty"));
+  folder_.write("noise.mp4", "this is no video");
+  folder_.write("empty.mp4", "");
+  const std::string describe = "describe --out d.npy --source ";
+  expect_refused(describe + "none", {"none"});
+  expect_refused(describe + "empty", {"empty"});
+  expect_refused(describe + "noise.mp4", {"noise.mp4"});
+  expect_refused(describe + "empty.mp4", {"empty.mp4"});
+  expect_refused(describe + "good.npy", {"good.npy", "image folder"});
+  expect_refused("run --source none --reference empty --ds 0 --model none.onnx",
+                 {"none:", "empty", "ds: 0", "none.onnx"});
+  expect_refused("run --source good.npy --reference wide.npy", {"13", "12"});
+  expect_refused("run --source good.npy --reference good.npy --budget-total 0", {"budget-total"});
+}
+
+TEST_F(BadInput, Models) {
+  std::filesystem::create_directory(file("drive"));
+  std::filesystem::copy_file(SEQLOOP_TEST_DATA "/gray_chain.onnx", file("model.onnx"));
+  folder_.write("noise.onnx", "this is no model");
+  folder_.write("drive/0.pgm", std::string("P5 4 4 255\n") + std::string(16, 'x'));
+  const std::string describe = "describe --out d.npy --source drive ";
+  expect_refused(describe + "--model none.onnx", {"none.onnx"});
+  expect_refused(describe + "--model noise.onnx", {"noise.onnx"});
+  expect_refused(describe + "--model model.onnx --layer nosuch", {"nosuch", "layers"});
+  expect_refused(describe + "--model " SEQLOOP_TEST_DATA "/four_channels.onnx", {"4", "channels"});
+  expect_refused(describe + "--model model.onnx --input-size 0x5 --mean 1,2", {"0x5", "1,2"});
+  expect_refused(describe + "--layer conv", {"layer", "--model"});
+  folder_.write("model.toml", "laier = \"x\"\nscale = \"big\"\n");
+  expect_refused(describe + "--model model.onnx",
+                 {"model.toml:1", "did you mean 'layer'", "model.toml:2", "'scale'"});
+}
+
+TEST_F(BadInput, OutputsThatCannotBeWritten) {
+  const std::string match =
+      "match --method seqcnnslam --reference good.npy --query good.npy --out ";
+  expect_refused(match + "none/m.csv", {"none"});
+  expect_refused(match + ".", {"folder"});
+  const test::Outcome full = run(match + "/dev/full");
+  EXPECT_EQ(full.exit_code, 1) << "it fails while running";
+  EXPECT_NE(full.err.find("/dev/full: "), std::string::npos) << full.err;
+  folder_.write("file", "");
+  expect_refused("run --source good.npy --exclude 20 --out r.jsonl --pictures file/pictures",
+                 {"file/pictures"});
+  EXPECT_FALSE(exists("r.jsonl"));
+}
+
+TEST_F(BadInput, MatchListsAndTruths) {
+  folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n1,2,0.5,0.5\n");
+  expect_refused("eval --matches list.csv", {"twice"});
+  folder_.write("list.csv", "query,match,score,uniqueness\n1,one,0.5,0.5\n");
+  expect_refused("eval --matches list.csv", {"list.csv:2", "'one'"});
+  folder_.write("list.csv", "query,match\n1,1\n");
+  expect_refused("eval --matches list.csv", {"uniqueness"});
+  folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5\n");
+  expect_refused("eval --matches list.csv", {"list.csv:2", "3 cells"});
+  folder_.write("list.csv", "");
+  expect_refused("eval --matches list.csv --truth none.csv", {"list.csv", "none.csv"});
+  expect_refused("eval --threshold-on x", {"threshold-on", "--matches"});
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,204 @@
+// The main job through the real binary, on a drive of made pictures and on made descriptors.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/oracle.hpp"
+#include "evaluation/csv.hpp"
+#include "files/npy_file.hpp"
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+class Run : public test::Program {
+ protected:
+  void write_npy(const std::string& name, const oracle::Vectors& rows) const {
+    files::NpyWriter writer(file(name), rows.front().size());
+    for (const auto& row : rows) writer.append(row);
+    writer.commit();
+  }
+
+  [[nodiscard]] std::vector<nlohmann::json> lines(const std::string& name) const {
+    std::istringstream text(test::read_all(file(name)));
+    std::vector<nlohmann::json> all;
+    for (std::string line; std::getline(text, line);) all.push_back(nlohmann::json::parse(line));
+    return all;
+  }
+
+  test::Outcome expect_done(const std::string& arguments) const {
+    test::Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << '\n' << outcome.err;
+    return outcome;
+  }
+};
+
+TEST_F(Run, MatchFollowsThePaperToTheLetter) {
+  const oracle::Vectors reference = oracle::drive(5, 130, 20, 0.2F);
+  const oracle::Vectors query = oracle::drive(5, 110, 20, 0.3F);
+  write_npy("r.npy", reference);
+  write_npy("q.npy", query);
+  for (const auto& [method, candidates] :
+       {std::pair{"seqcnnslam", Candidates::all}, std::pair{"a-seqcnnslam", Candidates::ranges},
+        std::pair{"o-seqcnnslam", Candidates::adaptive}}) {
+    expect_done(std::string("match --paper --reference r.npy --query q.npy --out m.csv --ds 14 "
+                            "--k 3 --num 6 --reinit 40 --initial-k 7 --rwindow 8 --method ") +
+                method);
+    MatcherConfig config;
+    config.candidates = candidates;
+    config.sequence_length = 14;
+    config.k = 3;
+    config.num = 6;
+    config.reinit = 40;
+    config.initial_k = 7;
+    config.rwindow = 8;
+    const auto wanted = oracle::match(reference, query, config);
+    const auto table = evaluation::CsvTable::read(file("m.csv"));
+    ASSERT_EQ(table.rows(), wanted.size());
+    for (std::size_t row = 0; row < wanted.size(); ++row) {
+      const auto whole = [&](const char* name) {
+        return static_cast<std::int64_t>(table.whole(row, table.column(name)));
+      };
+      EXPECT_EQ(whole("query"), wanted[row].query);
+      EXPECT_EQ(whole("match"), wanted[row].match);
+      EXPECT_EQ(whole("head"), wanted[row].head);
+      EXPECT_EQ(whole("k"), wanted[row].k);
+      EXPECT_EQ(whole("candidates"), wanted[row].candidates);
+      EXPECT_NEAR(table.number(row, table.column("score")), wanted[row].score, 1e-5);
+      EXPECT_NEAR(table.number(row, table.column("velocity")), wanted[row].velocity, 1e-9);
+      const double uniqueness = table.number(row, table.column("uniqueness"));
+      if (std::isnan(wanted[row].uniqueness)) {
+        EXPECT_TRUE(std::isnan(uniqueness));
+      } else {
+        EXPECT_NEAR(uniqueness, wanted[row].uniqueness, 1e-5);
+      }
+    }
+  }
+}
+
+TEST_F(Run, TheSameInputGivesTheSameBytes) {
+  oracle::Vectors laps = oracle::drive(6, 150, 20, 0.2F);
+  const oracle::Vectors second = oracle::drive(6, 150, 20, 0.3F);
+  laps.insert(laps.end(), second.begin(), second.end());
+  write_npy("q.npy", laps);
+  for (const std::string method : {"seqcnnslam", "a-seqcnnslam", "o-seqcnnslam"}) {
+    expect_done("match --query q.npy --out one.csv --method " + method);
+    expect_done("match --query q.npy --out two.csv --method " + method);
+    EXPECT_EQ(test::read_all(file("one.csv")), test::read_all(file("two.csv")));
+    EXPECT_GT(test::read_all(file("one.csv")).size(), 1000U);
+  }
+}
+
+TEST_F(Run, ConfigurationFileIsWonOverByFlags) {
+  write_npy("q.npy", oracle::drive(6, 80, 20));
+  folder_.write("c.toml",
+                "method = \"seqcnnslam\"\nds = 10\nexclude = 20\nmax-places = 7\n"
+                "standardise = false\n[budget]\ntotal = 1.5\n");
+  expect_done("match --config c.toml --query q.npy --out file.csv");
+  expect_done(
+      "match --method seqcnnslam --ds 10 --exclude 20 --standardise off --query q.npy "
+      "--out flags.csv");
+  EXPECT_EQ(test::read_all(file("file.csv")), test::read_all(file("flags.csv")));
+  expect_done("match --config c.toml --ds 12 --query q.npy --out won.csv");
+  EXPECT_NE(test::read_all(file("file.csv")), test::read_all(file("won.csv")));
+}
+
+TEST_F(Run, SaysThatRowsWereBroughtToUnitLength) {
+  oracle::Vectors query = oracle::drive(6, 60, 20);
+  write_npy("unit.npy", query);
+  for (float& value : query[3]) value *= 7.0F;
+  write_npy("long.npy", query);
+  expect_done(
+      "match --paper --method seqcnnslam --reference unit.npy --query unit.npy --out 1.csv");
+  const auto outcome = expect_done(
+      "match --paper --method seqcnnslam --reference unit.npy --query long.npy --out 2.csv");
+  EXPECT_NE(outcome.err.find("1 of 60 rows"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Run, RunAgreesWithMatchAndCountsItsFrames) {
+  write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
+  write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));
+  expect_done("match --method o-seqcnnslam --reference r.npy --query q.npy --out m.csv");
+  const auto outcome = expect_done("run --reference r.npy --source q.npy --out r.jsonl");
+  EXPECT_NE(outcome.err.find("110 frames:"), std::string::npos) << outcome.err;
+  for (const char* word : {"p50", "p99", "max", "grab", "describe", "match", "total", "dropped"}) {
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << word;
+  }
+  const auto table = evaluation::CsvTable::read(file("m.csv"));
+  const auto all = lines("r.jsonl");
+  ASSERT_EQ(all.size(), 110U);
+  std::size_t row = 0;
+  for (const auto& line : all) {
+    for (const char* key : {"frame", "time_s", "status", "match", "score", "uniqueness", "velocity",
+                            "head", "k", "candidates", "distances", "deadline_missed", "dropped"}) {
+      EXPECT_TRUE(line.contains(key)) << key;
+    }
+    for (const char* stage : {"grab", "describe", "match", "total"}) {
+      EXPECT_GE(line["latency_ms"][stage].get<double>(), 0.0);
+    }
+    if (line["match"].is_null()) continue;
+    EXPECT_EQ(line["frame"], table.whole(row, 0));
+    EXPECT_EQ(line["match"], table.whole(row, 1));
+    EXPECT_NEAR(line["score"].get<double>(), table.number(row, 2), 1e-8);
+    EXPECT_EQ(line["distances"], table.whole(row, 8));
+    ++row;
+  }
+  EXPECT_EQ(row, table.rows());
+}
+
+TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {
+  write_npy("q.npy", oracle::drive(5, 60, 20));
+  const auto outcome = expect_done("run --source q.npy --ds 10 --exclude 20 | cat");
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60);
+}
+
+TEST_F(Run, LivePaceWaitsForEachFramesTime) {
+  write_npy("q.npy", oracle::drive(5, 30, 8));
+  const auto begin = std::chrono::steady_clock::now();
+  expect_done("run --source q.npy --ds 5 --exclude 5 --fps 100 --pace live --out r.jsonl");
+  // A lower bound only: frame 29 is due at 0.29 s however slow the machine is.
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(280));
+}
+
+TEST_F(Run, EvalMeasuresByTheBook) {
+  folder_.write("m.csv",
+                "query,match,score,uniqueness\n0,0,0.9,0.1\n1,3,0.1,0.2\n2,9,0.5,0.3\n3,3,0.5,0.3\n"
+                "4,4,0.7,nan\n");
+  const auto json = [&](const std::string& more) {
+    return nlohmann::json::parse(expect_done("eval --json --matches m.csv " + more).out);
+  };
+  const auto by_uniqueness = json("--frames 10");
+  EXPECT_EQ(by_uniqueness["answered"], 5);
+  EXPECT_EQ(by_uniqueness["correct"], 4);
+  EXPECT_NEAR(by_uniqueness["precision"], 0.8, 1e-12);
+  EXPECT_NEAR(by_uniqueness["recall"], 0.4, 1e-12);
+  EXPECT_NEAR(by_uniqueness["recall_at_100_precision"], 0.2, 1e-12);
+  // (.1, 1) (.2, 1) (.3, 3/4) (.4, 4/5): equal thresholds enter together
+  EXPECT_NEAR(by_uniqueness["area_under_curve"], 0.2 + 0.1 * 0.875 + 0.1 * 0.775, 1e-12);
+  EXPECT_NEAR(json("--frames 10 --threshold-on score")["recall_at_100_precision"], 0.1, 1e-12);
+  EXPECT_EQ(json("--tolerance 1")["correct"], 3);
+  EXPECT_NEAR(json("")["recall"], 0.8, 1e-12) << "the matches reach to frame 4";
+  folder_.write("t.csv", "query,reference\n2,9\n2,100\n4,4\n7,7\n");
+  const auto by_file = json("--truth t.csv --tolerance 0");
+  EXPECT_EQ(by_file["correct"], 2);
+  EXPECT_NEAR(by_file["recall"], 2.0 / 3.0, 1e-12);
+}
+
+TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
+  const auto outcome = expect_done("plan --max-places 1000 --descriptor-size 64 --ds 10");
+  EXPECT_NE(outcome.out.find("256000  map: places"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("11010  descriptor distances"), std::string::npos)
+      << "11 columns of 1,000, and 10 for the change degree: " << outcome.out;
+  EXPECT_NE(outcome.out.find("5000  line sums"), std::string::npos) << "velocities 0.8 .. 1.2";
+}
+
+TEST_F(Run, VersionAndHelpEverywhere) {
+  EXPECT_NE(expect_done("--version").out.find("seqloop "), std::string::npos);
+  for (const std::string verb : {"run", "describe", "match", "eval", "plan"}) {
+    EXPECT_NE(expect_done(verb + " --version").out.find("seqloop "), std::string::npos);
+    EXPECT_NE(expect_done(verb + " --help").out.find("--config"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,91 @@
+// Text from outside, damaged at random: always an answer or a SetupError, never a crash. What
+// descriptor files and pictures do is tested with their readers.
+#include <random>
+
+#include "evaluation/measures.hpp"
+#include "gtest/gtest.h"
+#include "seqloop/config_file.hpp"
+#include "seqloop/matcher_settings.hpp"
+
+namespace seqloop {
+namespace {
+
+/// One to eight bytes changed, inserted, removed or doubled.
+std::string damaged(std::string text, std::mt19937& random) {
+  const auto below = [&](std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+  };
+  static constexpr std::string_view spice = "0123456789,.-+einf\n\r\t \"'[]{}=#\\x\0\xff";
+  for (std::size_t times = 1 + below(8); times > 0; --times) {
+    if (text.empty()) return text;
+    const std::size_t at = below(text.size());
+    switch (below(4)) {
+      case 0:
+        text[at] = spice[below(spice.size())];
+        break;
+      case 1:
+        text.insert(at, 1, spice[below(spice.size())]);
+        break;
+      case 2:
+        text.erase(at, 1 + below(20));
+        break;
+      default:
+        text.insert(at, text.substr(at, 1 + below(30)));
+    }
+  }
+  return text;
+}
+
+template <class Read>
+void fuzz(const std::string& good, std::uint32_t seed, Read read) {
+  std::mt19937 random(seed);
+  std::size_t taken = 0;
+  std::size_t refused = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    const std::string text = damaged(good, random);
+    try {
+      read(text) ? ++taken : ++refused;
+    } catch (const SetupError& error) {
+      ASSERT_FALSE(error.faults().empty()) << text;
+      ++refused;
+    }
+  }
+  std::printf("seed %u: %zu taken, %zu refused\n", seed, taken, refused);
+  EXPECT_GT(taken, 100U);
+  EXPECT_GT(refused, 100U);
+}
+
+TEST(ReaderFuzz, MatchLists) {
+  fuzz("query,match,score,uniqueness\n1,2,0.5,0.25\n2,3,1e-3,nan\n3,4,0.1,inf\n", 1,
+       [](const std::string& text) {
+         const evaluation::CsvTable table(text, "m.csv");
+         const auto answers = evaluation::read_answers(table, evaluation::ThresholdOn::uniqueness);
+         const auto measures = evaluation::measure(answers, evaluation::Truth::identity(10), 2, 10);
+         EXPECT_LE(measures.correct, measures.answered);
+         EXPECT_LE(measures.precision, 1.0);
+         return true;
+       });
+}
+
+TEST(ReaderFuzz, Truths) {
+  fuzz("query,reference\r\n1,2\r\n2,3\r\n", 2, [](const std::string& text) {
+    const auto truth = evaluation::Truth::from_csv(evaluation::CsvTable(text, "t.csv"));
+    EXPECT_GE(truth.frames(), 1U);
+    return true;
+  });
+}
+
+TEST(ReaderFuzz, ConfigurationFiles) {
+  program::MatcherSettings settings;
+  program::OptionTable table;
+  program::add_matcher_options(table, settings);
+  std::vector<std::string> known;
+  for (const auto& option : table.options()) known.push_back(option.name);
+  fuzz("ds = 20\nvmin = 0.8\nmethod = \"seqcnnslam\"\nstandardise = \"on\"\npaper = true\n", 3,
+       [&](const std::string& text) {
+         return program::apply_config_text(text, "c.toml", table, {}, known).empty();
+       });
+}
+
+}  // namespace
+}  // namespace seqloop

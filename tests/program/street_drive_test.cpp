@@ -1,0 +1,82 @@
+// The whole chain on drives that the project makes itself: pictures, truth, answers.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+class StreetDrive : public test::Program {
+ protected:
+  void make(const std::string& arguments) const {
+    const std::string command = "'" SEQLOOP_STREET_BINARY "' --quiet --size 160x90 --out '" +
+                                file("drive") + "' " + arguments;
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  }
+
+  nlohmann::json measures(const std::string& tolerance) const {
+    const auto evaluated =
+        run("eval --json --matches m.csv --truth drive/truth.csv --tolerance " + tolerance);
+    EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+    std::printf("%s", evaluated.out.c_str());
+    return nlohmann::json::parse(evaluated.out);
+  }
+};
+
+TEST_F(StreetDrive, IsLocalisedInAnotherSeason) {
+  make("--frames 300 --drives localise");
+  for (const std::string drive : {"reference", "query"}) {
+    ASSERT_EQ(run("describe --source drive/" + drive + " --out " + drive + ".npy").exit_code, 0);
+  }
+  ASSERT_EQ(run("match --method seqcnnslam --reference reference.npy --query query.npy --out m.csv")
+                .exit_code,
+            0);
+  EXPECT_GT(measures("3")["recall"].get<double>(), 0.7);
+}
+
+TEST_F(StreetDrive, ClosesItsLoopsAsAVideoAndShowsThem) {
+  make("--frames 500 --drives loop --format avi");
+  const auto outcome =
+      run("run --source drive/drive.avi --method seqcnnslam --ds 40 --out r.jsonl --pictures pics");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream text(test::read_all(file("r.jsonl")));
+  std::size_t frames = 0;
+  std::size_t matches = 0;
+  for (std::string line; std::getline(text, line); ++frames) {
+    matches += nlohmann::json::parse(line)["status"] == "match" ? 1U : 0U;
+  }
+  EXPECT_EQ(frames, 500U);
+  EXPECT_GT(matches, 50U);
+  for (const char* picture : {"pics/difference_matrix.png", "pics/matches.png"}) {
+    EXPECT_TRUE(test::read_all(file(picture)).starts_with("\x89PNG")) << picture;
+  }
+}
+
+TEST_F(StreetDrive, SurvivesDamageInTheMiddle) {
+  make("--frames 120 --drives localise");
+  const std::string cut = file("drive/query/000040.jpg");
+  ASSERT_TRUE(std::filesystem::exists(cut)) << listing();
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
+  folder_.write("drive/query/000041.jpg", "");
+  folder_.write("drive/query/notes.txt", "not a picture");
+  const auto outcome =
+      run("run --source drive/query --reference drive/reference --method seqcnnslam --ds 10 "
+          "--out r.jsonl");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* word : {"000040.jpg", "000041.jpg", "notes.txt", "2 frame_error"}) {
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << word << " in " << outcome.err;
+  }
+  std::istringstream text(test::read_all(file("r.jsonl")));
+  std::size_t frame = 0;
+  for (std::string line; std::getline(text, line); ++frame) {
+    const auto json = nlohmann::json::parse(line);
+    const bool bad = frame == 40 || frame == 41;
+    EXPECT_EQ(json["status"] == "frame_error", bad) << line;
+    EXPECT_EQ(json.contains("fault"), bad);
+  }
+  EXPECT_EQ(frame, 120U);
+}
+
+}  // namespace
+}  // namespace seqloop

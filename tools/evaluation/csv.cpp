@@ -1,0 +1,94 @@
+#include "evaluation/csv.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::evaluation {
+namespace {
+
+std::vector<std::string> cells(std::string_view line) {
+  std::vector<std::string> found;
+  while (true) {
+    const std::size_t end = std::min(line.find(','), line.size());
+    std::string_view cell = line.substr(0, end);
+    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
+    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+    found.emplace_back(cell);
+    if (end == line.size()) return found;
+    line.remove_prefix(end + 1);
+  }
+}
+
+template <class Number>
+bool parse(const std::string& cell, Number& value) {
+  const char* end = cell.data() + cell.size();
+  const auto result = std::from_chars(cell.data(), end, value);
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(name)) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (line.empty()) continue;
+    std::vector<std::string> found = cells(line);
+    if (header_.empty()) {
+      header_ = std::move(found);
+      continue;
+    }
+    if (found.size() != header_.size()) {
+      throw SetupError({name_ + ":" + std::to_string(number), std::to_string(found.size()) +
+                                                                  " cells under a header of " +
+                                                                  std::to_string(header_.size())});
+    }
+    lines_.push_back(std::move(found));
+    line_numbers_.push_back(number);
+  }
+  if (header_.empty()) throw SetupError({name_, "empty: not even a header line"});
+}
+
+CsvTable CsvTable::read(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
+    throw SetupError({file.string(), "cannot be read"});
+  }
+  return {text, file.string()};
+}
+
+std::size_t CsvTable::column(std::string_view header) const {
+  const auto found = std::ranges::find(header_, header);
+  if (found == header_.end()) {
+    throw SetupError({name_, "no column '" + std::string(header) + "' in its header line"});
+  }
+  return static_cast<std::size_t>(found - header_.begin());
+}
+
+std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
+  std::uint64_t value = 0;
+  if (!parse(lines_[row][column], value)) refuse(row, column, "a whole number");
+  return value;
+}
+
+double CsvTable::number(std::size_t row, std::size_t column) const {
+  double value = 0.0;
+  if (!parse(lines_[row][column], value)) refuse(row, column, "a number");
+  return value;
+}
+
+void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view wanted) const {
+  throw SetupError({name_ + ":" + std::to_string(line_numbers_[row]),
+                    "'" + lines_[row][column] + "' under '" + header_[column] + "' is not " +
+                        std::string(wanted)});
+}
+
+}  // namespace seqloop::evaluation

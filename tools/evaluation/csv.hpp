@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace seqloop::evaluation {
+
+/// A file of comma-separated numbers under a header line.
+class CsvTable {
+ public:
+  /// @param name the file, for messages. Throws SetupError: no header, a line with too few or too
+  /// many cells.
+  CsvTable(std::string_view text, std::string name);
+
+  /// Throws SetupError when the file cannot be read, and as above.
+  static CsvTable read(const std::filesystem::path& file);
+
+  [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }
+
+  /// @return index of the column with this header. Throws SetupError: there is none.
+  [[nodiscard]] std::size_t column(std::string_view header) const;
+
+  /// Throw SetupError, with the line, for a cell that is no such number.
+  [[nodiscard]] std::uint64_t whole(std::size_t row, std::size_t column) const;
+  [[nodiscard]] double number(std::size_t row, std::size_t column) const;  ///< nan and inf too
+
+ private:
+  [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view wanted) const;
+
+  std::string name_;
+  std::vector<std::string> header_;
+  std::vector<std::vector<std::string>> lines_;
+  std::vector<std::size_t> line_numbers_;
+};
+
+}  // namespace seqloop::evaluation

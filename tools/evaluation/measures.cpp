@@ -1,0 +1,77 @@
+#include "evaluation/measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::evaluation {
+namespace {
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// Sorts undefined behind everything, infinity included.
+bool more_certain(const Answer& a, const Answer& b) {
+  if (std::isnan(a.uncertainty) || std::isnan(b.uncertainty)) {
+    return !std::isnan(a.uncertainty) && std::isnan(b.uncertainty);
+  }
+  return a.uncertainty < b.uncertainty;
+}
+
+double area(const std::vector<CurvePoint>& curve) {
+  double sum = 0.0;
+  double recall = 0.0;
+  double precision = curve.empty() ? 0.0 : curve.front().precision;
+  for (const CurvePoint& point : curve) {
+    sum += (point.recall - recall) * (point.precision + precision) / 2.0;
+    recall = point.recall;
+    precision = point.precision;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<Answer> read_answers(const CsvTable& table, ThresholdOn threshold_on) {
+  const std::size_t query = table.column("query");
+  const std::size_t match = table.column("match");
+  const std::size_t swept =
+      table.column(threshold_on == ThresholdOn::uniqueness ? "uniqueness" : "score");
+  std::vector<Answer> answers;
+  std::set<std::uint64_t> seen;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    answers.push_back({table.whole(row, query), table.whole(row, match), table.number(row, swept)});
+    if (!seen.insert(answers.back().query).second) {
+      throw SetupError(
+          {"matches", "query " + std::to_string(answers.back().query) + " is answered twice"});
+    }
+  }
+  return answers;
+}
+
+Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t tolerance,
+                 std::uint64_t frames) {
+  std::stable_sort(answers.begin(), answers.end(), more_certain);
+  Measures measures;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Answer& answer = answers[i];
+    ++measures.answered;
+    measures.correct += truth.right(answer.query, answer.match, tolerance) ? 1U : 0U;
+    if (i + 1 < answers.size() && !more_certain(answer, answers[i + 1])) continue;
+    measures.curve.push_back({ratio(measures.correct, frames),
+                              ratio(measures.correct, measures.answered), answer.uncertainty});
+    if (measures.correct == measures.answered) {
+      measures.recall_at_100_precision = measures.curve.back().recall;
+    }
+  }
+  measures.precision = ratio(measures.correct, measures.answered);
+  measures.recall = ratio(measures.correct, frames);
+  measures.area_under_curve = area(measures.curve);
+  return measures;
+}
+
+}  // namespace seqloop::evaluation

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "evaluation/csv.hpp"
+#include "evaluation/truth.hpp"
+
+namespace seqloop::evaluation {
+
+/// An answer, and the number that a precision-recall curve sweeps: smaller is more certain.
+struct Answer {
+  std::uint64_t query;
+  std::uint64_t match;
+  double uncertainty;  ///< NaN: the least certain of all
+};
+
+/// Which column of a match list the curve sweeps.
+enum class ThresholdOn : std::uint8_t { uniqueness, score };
+
+/// Reads a match list. Throws SetupError as CsvTable does, and for a query that is answered twice.
+[[nodiscard]] std::vector<Answer> read_answers(const CsvTable& table, ThresholdOn threshold_on);
+
+struct CurvePoint {
+  double recall;
+  double precision;
+  double threshold;  ///< answers up to this one are let in; NaN: all
+};
+
+struct Measures {
+  std::uint64_t answered = 0;
+  std::uint64_t correct = 0;
+  double precision = 0.0;                ///< of all answers, Eq. (2); 0 without answers
+  double recall = 0.0;                   ///< of all answers, Eq. (3)
+  double recall_at_100_precision = 0.0;  ///< the highest recall at which nothing is wrong
+  /// Area under precision over recall by the trapezoid rule; down to recall 0 the first point's
+  /// precision counts, beyond the last point's recall nothing does.
+  double area_under_curve = 0.0;
+  std::vector<CurvePoint> curve;  ///< rising recall; equal thresholds enter together
+};
+
+/// @param tolerance frames by which a match may be off, Eqs. (2), (3)
+/// @param frames    queries that have a truth, what recall is a share of; >= 1
+[[nodiscard]] Measures measure(std::vector<Answer> answers, const Truth& truth,
+                               std::uint64_t tolerance, std::uint64_t frames);
+
+}  // namespace seqloop::evaluation

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <utility>
+
+#include "opencv/builtin_describer.hpp"
+#include "opencv/threads.hpp"
+#include "seqloop/build_info.hpp"
+#include "seqloop/detector.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/drives.hpp"
+#include "seqloop/latency_histogram.hpp"
+#include "seqloop/verb.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct BenchSettings {
+  bool json = false;
+  std::string only;
+  std::size_t places = 3476;
+  std::size_t descriptor_size = 735;
+  std::size_t ds = 100;
+  std::size_t rounds = 200;
+  DriveSettings drive;
+};
+
+/// Something that is timed.
+struct Contender {
+  std::string what;
+  std::string by;
+  std::size_t descriptor_size;
+  std::size_t bytes;  ///< that one round reads at least
+  std::function<void()> round;
+  LatencyHistogram times{};
+};
+
+/// Takes turns, so that a machine that slows down slows all contenders down.
+void time_in_turn(std::vector<Contender>& contenders, std::size_t rounds) {
+  constexpr std::size_t warm_up = 10;
+  for (std::size_t round = 0; round < warm_up + rounds; ++round) {
+    for (Contender& contender : contenders) {
+      const auto begin = std::chrono::steady_clock::now();
+      contender.round();
+      const Nanoseconds taken = std::chrono::steady_clock::now() - begin;
+      if (round >= warm_up) contender.times.add(taken);
+    }
+  }
+}
+
+/// A picture with edges in all directions. What is in it does not change what it costs.
+std::vector<std::uint8_t> made_picture(int width, int height) {
+  std::vector<std::uint8_t> pixels;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double wave = std::sin(0.05 * x + 0.0004 * x * y) + std::sin(0.07 * y);
+      for (int channel = 0; channel < 3; ++channel) {
+        pixels.push_back(static_cast<std::uint8_t>(128.0 + 50.0 * wave + 5.0 * channel));
+      }
+    }
+  }
+  return pixels;
+}
+
+std::vector<float> random_unit(std::mt19937& random, std::size_t size) {
+  std::normal_distribution<float> normal;
+  std::vector<float> vector(size);
+  for (float& value : vector) value = normal(random);
+  normalise(vector);
+  return vector;
+}
+
+/// The built-in descriptor, and the model that is given beside it, from a 640x480 colour frame.
+void time_describing(const BenchSettings& settings, std::vector<Contender>& all) {
+  constexpr int width = 640;
+  constexpr int height = 480;
+  const std::vector<std::uint8_t> pixels = made_picture(width, height);
+  const Image image{pixels.data(), width, height, std::size_t{width} * 3, PixelFormat::bgr8};
+  std::vector<std::pair<std::string, std::unique_ptr<Describer>>> describers;
+  describers.emplace_back("seqloop-built-in", opencv::make_builtin_describer());
+  const opencv::ModelSettings& model = settings.drive.model;
+  if (!model.model.empty()) {
+    describers.emplace_back(
+        model.model.stem().string() + (model.layer.empty() ? "" : ":" + model.layer),
+        open_describer(settings.drive));
+  }
+  std::vector<Contender> contenders;
+  std::vector<std::vector<float>> outputs;
+  outputs.reserve(describers.size());
+  for (const auto& [name, describer] : describers) {
+    std::vector<float>& output = outputs.emplace_back(describer->size());
+    contenders.push_back({"describe", name, describer->size(), pixels.size(),
+                          [&image, &output, worker = describer.get()] {
+                            if (worker->describe(image, output) == Description::failed) {
+                              throw std::runtime_error("describe: " +
+                                                       std::string(worker->last_fault()));
+                            }
+                          }});
+  }
+  time_in_turn(contenders, settings.rounds);
+  for (Contender& contender : contenders) all.push_back(std::move(contender));
+}
+
+/// A whole step of exhaustive search: one column of differences, every line through every row.
+void time_steps(const BenchSettings& settings, std::vector<Contender>& all) {
+  MatcherConfig config;
+  config.candidates = Candidates::all;
+  config.sequence_length = settings.ds;
+  config.standardisation.on = false;
+  const Capacity capacity{settings.places, settings.descriptor_size};
+  Faults faults = validate(config);
+  for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
+  refuse(std::move(faults));
+
+  std::mt19937 random(1);
+  PlaceMap map(capacity);
+  while (map.add(random_unit(random, capacity.descriptor_size))) {
+  }
+  Detector detector(config, map);
+  const std::vector<float> query = random_unit(random, capacity.descriptor_size);
+  for (std::size_t frame = 0; frame <= settings.ds; ++frame) (void)detector.step(query);
+  std::vector<Contender> contenders;
+  contenders.push_back({"step", "seqloop-float", capacity.descriptor_size,
+                        capacity.places * padded_size(capacity.descriptor_size) * sizeof(float),
+                        [&] { (void)detector.step(query); }});
+  time_in_turn(contenders, settings.rounds);
+  for (Contender& contender : contenders) all.push_back(std::move(contender));
+}
+
+double microseconds(Nanoseconds duration) {
+  return std::chrono::duration<double, std::micro>(duration).count();
+}
+
+void bench(const BenchSettings& settings, Faults faults) {
+  if (!settings.only.empty() && settings.only != "describe" && settings.only != "step") {
+    faults.push_back({"only", "'" + settings.only + "' is not timed", "describe or step"});
+  }
+  if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
+  refuse(std::move(faults));
+  opencv::use_threads(1);
+  fmt::print(stderr, "seqloop: {}\n", condition_line());
+  std::vector<Contender> all;
+  if (settings.only != "step") time_describing(settings, all);
+  if (settings.only != "describe") time_steps(settings, all);
+
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const Contender& row : all) {
+    const LatencyHistogram& times = row.times;
+    rows.push_back({{"what", row.what},
+                    {"by", row.by},
+                    {"n", settings.places},
+                    {"d", row.descriptor_size},
+                    {"ds", settings.ds},
+                    {"p50_us", microseconds(times.quantile(0.5))},
+                    {"p99_us", microseconds(times.quantile(0.99))},
+                    {"p999_us", microseconds(times.quantile(0.999))},
+                    {"max_us", microseconds(times.maximum())},
+                    {"bytes", row.bytes}});
+    if (settings.json) continue;
+    fmt::print("{:<10}{:<40}{:>8} values{:>10.1f} us p50{:>10.1f} us p99\n", row.what, row.by,
+               row.descriptor_size, microseconds(times.quantile(0.5)),
+               microseconds(times.quantile(0.99)));
+  }
+  if (settings.json) fmt::print("{}\n", rows.dump(1));
+}
+
+}  // namespace
+
+Verb bench_verb() {
+  const auto settings = std::make_shared<BenchSettings>();
+  Verb verb{"bench",
+            "Time the stages on this machine, on one thread, rivals in the same run",
+            {},
+            [settings](Faults faults) { bench(*settings, std::move(faults)); }};
+  verb.options.flag("json", settings->json, "print JSON");
+  verb.options.text("only", settings->only, "describe or step [both]");
+  verb.options.count("n", settings->places, "places of the map [3476]");
+  verb.options.count("d", settings->descriptor_size, "values in a descriptor, for step [735]");
+  verb.options.count("ds", settings->ds, "sequence length [100]");
+  verb.options.count("rounds", settings->rounds, "times that each is timed [200]");
+  add_drive_options(verb.options, settings->drive);
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "files/npy_file.hpp"
+#include "files/output_file.hpp"
+#include "seqloop/detector.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/drive_length.hpp"
+#include "seqloop/matcher_settings.hpp"
+#include "seqloop/progress.hpp"
+#include "seqloop/verb.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct MatchSettings {
+  std::filesystem::path reference;
+  std::filesystem::path query;
+  std::filesystem::path out;
+  MatcherSettings matcher;
+};
+
+/// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
+void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
+  std::size_t changed = 0;
+  for (std::size_t row = 0; row < matrix.rows; ++row) {
+    const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
+    double squares = 0.0;
+    for (const float value : values) {
+      squares += static_cast<double>(value) * static_cast<double>(value);
+    }
+    // What describe wrote is unit to rounding and must stay as it is, bit by bit.
+    if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
+    normalise(values);
+    ++changed;
+  }
+  if (changed > 0) {
+    fmt::print(stderr, "seqloop: {}: {} of {} rows were not unit length and have been made so\n",
+               name.string(), changed, matrix.rows);
+  }
+}
+
+PlaceMap make_map(const files::Matrix& reference, bool standardise) {
+  PlaceMap map({reference.rows, reference.columns});
+  for (std::size_t row = 0; row < reference.rows; ++row) {
+    if (!map.add(reference.row(row))) break;
+  }
+  if (standardise) map.standardise();
+  return map;
+}
+
+/// A row of the match list. NaN carries no sign here.
+std::string csv_row(const FrameReport& report) {
+  const Match& match = *report.match;
+  const std::string uniqueness =
+      std::isnan(match.uniqueness) ? "nan" : fmt::format("{:.9g}", match.uniqueness);
+  return fmt::format("{},{},{:.9g},{},{:.9g},{},{},{},{}\n", *report.frame, match.place,
+                     match.score, uniqueness, match.velocity, match.head, report.work.candidates,
+                     report.k, report.work.distances);
+}
+
+void match(const MatchSettings& settings, Faults faults) {
+  const bool closing = settings.reference.empty();
+  const MatcherConfig config =
+      resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  std::optional<files::Matrix> query;
+  std::optional<files::Matrix> reference;
+  if (settings.query.empty()) {
+    faults.push_back({"query", "not given", "--query Q.npy"});
+  } else {
+    collect(faults, [&] { query = files::read_npy(settings.query); });
+  }
+  if (!closing) collect(faults, [&] { reference = files::read_npy(settings.reference); });
+  if (settings.out.empty()) faults.push_back({"out", "not given", "--out M.csv"});
+  if (query && reference && query->columns != reference->columns) {
+    faults.push_back({"reference, query",
+                      fmt::format("{} values in a row of one, {} in a row of the other",
+                                  reference->columns, query->columns),
+                      "describe both with the same model and layer"});
+  }
+  if (faults.empty()) {
+    check_length(faults, config, query->rows, reference ? reference->rows : query->rows);
+  }
+  refuse(std::move(faults));
+
+  normalise_rows(*query, settings.query);
+  if (reference) normalise_rows(*reference, settings.reference);
+  PlaceMap map = closing ? PlaceMap({query->rows, query->columns})
+                         : make_map(*reference, config.standardisation.on);
+  reference.reset();
+  Detector detector(config, map);
+  files::OutputFile out(settings.out);
+  out.write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
+  Progress progress("matching", query->rows);
+  std::size_t answered = 0;
+  for (std::size_t row = 0; row < query->rows; ++row) {
+    const FrameReport report = detector.step(query->row(row));
+    progress.step();
+    if (!report.match) continue;
+    out.write(csv_row(report));
+    ++answered;
+  }
+  progress.done();
+  out.commit();
+  fmt::print(stderr, "seqloop: {} of {} frames answered, in {}\n", answered, query->rows,
+             settings.out.string());
+}
+
+}  // namespace
+
+Verb match_verb() {
+  const auto settings = std::make_shared<MatchSettings>();
+  Verb verb{"match",
+            "Match the descriptors of one drive with those of another, or with its own",
+            {},
+            [settings](Faults faults) { match(*settings, std::move(faults)); }};
+  verb.options.path("reference", settings->reference,
+                    "descriptors of the map, .npy [close loops within the query]");
+  verb.options.path("query", settings->query, "descriptors of the drive, .npy");
+  verb.options.path("out", settings->out, "match list, CSV");
+  add_matcher_options(verb.options, settings->matcher);
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::program {
+
+/// How a value is written, on the command line and in a TOML file.
+enum class ValueKind {
+  flag,    ///< no value on the command line; true or false in TOML
+  count,   ///< whole number, 0 or more
+  number,  ///< decimal number
+  text,
+  on_off,  ///< on or off; in TOML true and false too
+  size,    ///< WxH in pixels
+  triple   ///< three numbers B,G,R; in TOML an array too
+};
+
+/// One setting: a long flag, and a TOML key of the same name.
+struct Option {
+  std::string name;  ///< without dashes in front
+  ValueKind kind;
+  std::string help;
+  /// Takes the value as written on the command line. Throws std::invalid_argument: why not.
+  std::function<void(std::string_view)> set;
+};
+
+/// The settings of one subcommand. Every value is taken as text and converted here, so that all
+/// faults of a command line and a file come out together.
+class OptionTable {
+ public:
+  void flag(std::string name, bool& target, std::string help);
+  void count(std::string name, std::size_t& target, std::string help);
+  void number(std::string name, double& target, std::string help);
+  void number(std::string name, float& target, std::string help);
+  void text(std::string name, std::string& target, std::string help);
+  void path(std::string name, std::filesystem::path& target, std::string help);
+  void on_off(std::string name, bool& target, std::string help);
+  void add(Option option) { options_.push_back(std::move(option)); }
+
+  [[nodiscard]] const std::vector<Option>& options() const noexcept { return options_; }
+  [[nodiscard]] const Option* find(std::string_view name) const noexcept;
+
+  /// Takes one value. @return why not, with the name; nothing when it fits
+  [[nodiscard]] static Faults set(const Option& option, std::string_view value);
+
+ private:
+  std::vector<Option> options_;
+};
+
+/// @return the name that is written most like this one, when one is near enough to be meant
+[[nodiscard]] std::string nearest(std::string_view name, const std::vector<std::string>& known);
+
+/// Numbers as C writes them, in any locale. Throw std::invalid_argument: why not.
+[[nodiscard]] std::size_t parse_count(std::string_view text);
+[[nodiscard]] double parse_number(std::string_view text);
+[[nodiscard]] bool parse_on_off(std::string_view text);
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view text, char separator);
+
+}  // namespace seqloop::program

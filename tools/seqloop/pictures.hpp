@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "seqloop/frame_report.hpp"
+#include "seqloop/frame_source.hpp"
+#include "seqloop/place_map.hpp"
+
+namespace seqloop::program {
+
+/// Keeps what pictures of a run need, while it runs: at most 1,000 descriptors, thinned out evenly
+/// as the drive grows, and the decisions.
+class PictureRecorder {
+ public:
+  /// @param query what the detector compared, as `Detector::newest_query` gives it
+  void add(const FrameReport& report, std::span<const float> query);
+
+  /// Writes `difference_matrix.png`: places upwards, frames to the right, dark where they are
+  /// alike, and the matches on it. Throws files::IoError, SetupError.
+  void write_matrix(const std::filesystem::path& folder, const PlaceMap& map) const;
+
+  /// Opens a drive anew, from its first frame.
+  using Reopen = std::function<std::unique_ptr<FrameSource>()>;
+
+  /// Writes `matches.png`: frames of the drive and the places they were matched with, side by side,
+  /// evenly over the drive. @return false when there are none to show. Throws as write_matrix does.
+  bool write_pairs(const std::filesystem::path& folder, const Reopen& query,
+                   const Reopen& reference) const;
+
+ private:
+  struct Decision {
+    std::uint64_t frame;
+    Gate gate;
+    Match match;
+  };
+
+  std::uint64_t step_ = 1;  // every step_-th frame is kept
+  std::vector<std::vector<float>> queries_;
+  std::vector<Decision> decisions_;
+};
+
+}  // namespace seqloop::program
