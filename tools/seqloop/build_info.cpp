@@ -5,6 +5,8 @@
 #include <fstream>
 #include <thread>
 
+#include "seqloop_commit.hpp"
+
 namespace seqloop::program {
 namespace {
 
