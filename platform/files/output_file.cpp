@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -30,6 +31,19 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::stri
   }
 }
 
+/// Nothing is ever created or replaced in the folders in which the kernel shows itself.
+bool in_system_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto folder = std::filesystem::weakly_canonical(path, error).parent_path();
+  const auto lies_in = [](const std::filesystem::path& inner, const std::string& outer) {
+    return (inner.string() + "/").starts_with(outer + "/");
+  };
+  return std::ranges::any_of(std::array{path.parent_path(), folder}, [&](const auto& start) {
+    if (lies_in(start, "/dev/shm")) return false;  // memory for everybody's files
+    return lies_in(start, "/dev") || lies_in(start, "/proc") || lies_in(start, "/sys");
+  });
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), buffer_(buffer_bytes) {
@@ -37,23 +51,30 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), buf
     throw SetupError(
         Fault{"output file '" + path_.string() + "'", "names no file", "give a file name"});
   const std::string shown = path_.string();
-  std::error_code error;
-  if (std::filesystem::is_symlink(path_, error)) {
-    const auto target = std::filesystem::weakly_canonical(path_, error);
-    if (!error) path_ = target;
+  if (shown == "-" || shown == "/dev/stdout") {
+    descriptor_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (descriptor_ < 0) throw SetupError(Fault{"standard output", reason(errno)});
+    return;
   }
+  // The status comes first, and through all links: what a link in /dev or /proc leads to has no
+  // name that could be renamed over.
+  std::error_code error;
   const auto status = std::filesystem::status(path_, error);
   if (std::filesystem::is_directory(status))
     throw SetupError(Fault{shown, "is a folder", "give the name of a file"});
-
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  const bool exists = std::filesystem::exists(status);
+  if (in_system_folder(path_) || (exists && !std::filesystem::is_regular_file(status))) {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0)
       throw SetupError(Fault{shown, "cannot be opened for writing: " + reason(errno)});
     return;
   }
+  if (std::filesystem::is_symlink(path_, error)) {
+    const auto target = std::filesystem::weakly_canonical(path_, error);
+    if (!error) path_ = target;
+  }
   // Renaming would replace a file that its owner has protected.
-  if (std::filesystem::exists(status) && ::access(path_.c_str(), W_OK) != 0)
+  if (exists && ::access(path_.c_str(), W_OK) != 0)
     throw SetupError(Fault{shown, "exists and may not be written: " + reason(errno),
                            "choose another name or change its permissions"});
   open_beside();

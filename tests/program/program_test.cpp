@@ -152,6 +152,22 @@ TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60);
 }
 
+TEST_F(Run, NeverReplacesWhatALinkOfTheSystemLeadsTo) {
+  // As root, renaming over /dev/stdout would take the whole machine's standard output away.
+  write_npy("q.npy", oracle::drive(5, 60, 20));
+  const std::string run = "run --source q.npy --ds 10 --exclude 20 --out ";
+  std::filesystem::create_symlink("/proc/self/fd/1", file("link"));
+  for (const std::string out : {"-", "/dev/stdout", "/proc/self/fd/1", "link"}) {
+    const auto outcome = expect_done(run + out + " | cat");
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60) << out;
+    expect_done(run + out + " > plain.jsonl");
+    const std::string plain = test::read_all(file("plain.jsonl"));
+    EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 60) << out;
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(file("link")));
+  EXPECT_TRUE(std::filesystem::is_symlink("/dev/stdout"));
+}
+
 TEST_F(Run, LivePaceWaitsForEachFramesTime) {
   write_npy("q.npy", oracle::drive(5, 30, 8));
   const auto begin = std::chrono::steady_clock::now();

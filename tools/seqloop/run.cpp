@@ -25,7 +25,7 @@ namespace {
 struct RunSettings {
   std::filesystem::path source;
   std::filesystem::path reference;
-  std::filesystem::path out = "/dev/stdout";
+  std::filesystem::path out = "-";
   std::filesystem::path pictures;
   Pace pace = Pace::max;
   double budget_ms = 40.0;
