@@ -42,6 +42,10 @@ bool finite(std::span<const float> values) {
   return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
+bool blank(std::span<const float> values) {
+  return std::ranges::all_of(values, [](float value) { return value == 0.0F; });
+}
+
 }  // namespace
 
 std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
@@ -131,7 +135,8 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 bool Detector::take_query(std::span<const float> descriptor) noexcept {
   const std::uint64_t frame = slices_.frames();
   const std::span<float> query = slices_.push();
-  if (descriptor.size() != map_->descriptor_size() || !finite(descriptor)) {
+  if (descriptor.size() != map_->descriptor_size() || !finite(descriptor) ||
+      (config_.blank_is_unreadable && blank(descriptor))) {
     if (frame == 0) {
       std::ranges::fill(query, 0.0F);
     } else {

@@ -37,10 +37,9 @@ std::optional<BestRow> LoopDecision::decide(std::span<const float> scores,
   const Lowest rival = lowest(scores, runs, [&](std::size_t row) {
     return row + half_window_ < best.row || row > best.row + half_window_;
   });
-  std::optional<float> rival_score;
-  if (rival.scored > 0) rival_score = rival.score;
+  const std::optional<float> rival_score =
+      rival.scored > 0 ? std::optional(rival.score) : last_full_rival_;
   if (full_search) last_full_rival_ = rival_score;
-  if (!rival_score) rival_score = last_full_rival_;
   const float uniqueness =
       rival_score ? best.score / *rival_score : std::numeric_limits<float>::quiet_NaN();
   return BestRow{best.row, best.score, uniqueness, best.scored};

@@ -67,8 +67,8 @@ Faults validate(const MatcherConfig& config) {
 
 Faults validate(const Capacity& capacity) {
   Faults faults;
-  check_range(faults, "places", capacity.places, 1, std::size_t{1} << 32U);
-  check_range(faults, "descriptor size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
+  check_range(faults, "max-places", capacity.places, 1, std::size_t{1} << 32U);
+  check_range(faults, "descriptor-size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
   return faults;
 }
 

@@ -31,7 +31,7 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   const Nanoseconds matched = clock_->now();
 
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
-    processed.fault = "the descriptor holds values that are not finite, or too few or too many";
+    processed.fault = "its descriptor is all zero, not finite, or of the wrong size";
   }
   processed.times.describe = described - grabbed;
   processed.times.match = matched - described;

@@ -48,8 +48,9 @@ class Detector {
   ~Detector() = default;
 
   /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
-  /// @param descriptor [D] unit L2. Empty, of another size, or with NaN or infinity: the frame
-  ///   could not be read; it counts, the scene is taken to stand still, the gate is `frame_error`.
+  /// @param descriptor [D] unit L2. Empty, of another size, with NaN or infinity, or all zero where
+  ///   `blank_is_unreadable`: the frame could not be read; it counts, the scene is taken to stand
+  ///   still, the gate is `frame_error`.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 

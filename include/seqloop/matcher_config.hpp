@@ -47,6 +47,9 @@ struct MatcherConfig {
   std::size_t reinit = 450;          ///< L: every L-th matched frame searches all rows; >= 1
   std::size_t exclude = 100;         ///< closing loops: newest frames that are no places; >= 1
   Standardisation standardisation;
+  /// A descriptor of zeros (a covered lens, a black tunnel) counts as a frame that could not be
+  /// read. Otherwise all such frames look alike, and match each other with top certainty.
+  bool blank_is_unreadable = true;
   float max_uniqueness = 0.94F;  ///< a match must be at least this unique; above 0 .. 1
 
   bool operator==(const MatcherConfig&) const = default;

@@ -69,6 +69,8 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), buf
       throw SetupError(Fault{shown, "cannot be opened for writing: " + reason(errno)});
     return;
   }
+  if (!exists && std::filesystem::is_symlink(path_, error))
+    throw SetupError(Fault{shown, "is a link that leads nowhere", "remove it"});
   if (std::filesystem::is_symlink(path_, error)) {
     const auto target = std::filesystem::weakly_canonical(path_, error);
     if (!error) path_ = target;
@@ -78,6 +80,10 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), buf
     throw SetupError(Fault{shown, "exists and may not be written: " + reason(errno),
                            "choose another name or change its permissions"});
   open_beside();
+  // What replaces a file is as private as the file was.
+  struct stat before {};
+  if (exists && ::stat(path_.c_str(), &before) == 0)
+    (void)::fchmod(descriptor_, before.st_mode & 07777U);
 }
 
 void OutputFile::open_beside() {

@@ -20,9 +20,9 @@ class IoError : public std::runtime_error {
 ///
 /// Until `commit` everything goes to `.NAME.partial-PID` in the same folder; the destructor removes
 /// that file if there was no commit, and a process that is killed leaves nothing else behind. A
-/// name that exists and is no regular file (/dev/null, a pipe), and any name in /dev, /proc or /sys,
-/// is written directly; `-` and /dev/stdout are the standard output. A symbolic link is followed, so
-/// that the file it points to is replaced and not the link.
+/// name that exists and is no regular file (/dev/null, a pipe), and any name in /dev, /proc or
+/// /sys, is written directly; `-` and /dev/stdout are the standard output. A symbolic link is
+/// followed, so that the file it points to is replaced and not the link.
 class OutputFile {
  public:
   /// Throws SetupError: the folder is missing or not writable, the name is a folder, a file that

@@ -116,6 +116,19 @@ TEST(Detector, AFrameThatCannotBeReadDecidesNothingAndBreaksNothing) {
   }
 }
 
+TEST(Detector, ABlankFrameIsUnreadableUnlessThePaperIsFollowed) {
+  const oracle::Vectors drive = oracle::drive(6, 30, 16, 0.1F);
+  for (const bool unreadable : {true, false}) {
+    MatcherConfig config = paper(Candidates::all, 6);
+    config.blank_is_unreadable = unreadable;
+    PlaceMap map = map_of(drive);
+    Detector detector(config, map);
+    (void)detector.step(drive[0]);
+    const FrameReport report = detector.step(std::vector<float>(16, 0.0F));
+    EXPECT_EQ(report.gate == Gate::frame_error, unreadable);
+  }
+}
+
 TEST(Detector, SaysWhenTheMapIsFullAndKeepsAnswering) {
   const oracle::Vectors laps = two_laps(8, 150, 16);
   MatcherConfig config = paper(Candidates::all, 10, Use::close_loops);

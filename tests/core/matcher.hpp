@@ -17,6 +17,7 @@ inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use:
   config.use = use;
   config.sequence_length = ds;
   config.standardisation.on = false;
+  config.blank_is_unreadable = false;
   config.max_uniqueness = 1.0F;
   return config;
 }

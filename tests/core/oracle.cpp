@@ -134,8 +134,8 @@ class Matcher {
         rival = std::min(rival, line.score);
       }
     }
-    if (full) last_full_rival_ = rival;
     if (rival == none) rival = last_full_rival_;
+    if (full) last_full_rival_ = rival;
 
     const Line line = scored[best];
     const Answer answer{n,

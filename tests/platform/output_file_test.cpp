@@ -71,6 +71,23 @@ TEST(OutputFile, TwoAtOnceDoNotShareAFile) {
   EXPECT_EQ(read_all(folder.path() / "out"), "1");
 }
 
+TEST(OutputFile, StaysAsPrivateAsItWas) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("secret", "old");
+  std::filesystem::permissions(path, std::filesystem::perms{0600});
+  OutputFile file(path);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms{0600});
+}
+
+TEST(OutputFile, RefusesALinkToNowhere) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink(folder.path() / "none", folder.path() / "link");
+  EXPECT_TRUE(test::says(test::setup_error([&] { const OutputFile file(folder.path() / "link"); }),
+                         "leads nowhere"));
+}
+
 TEST(OutputFile, ReplacesWhatALinkPointsTo) {
   const TemporaryFolder folder;
   const auto target = folder.write("target", "old");

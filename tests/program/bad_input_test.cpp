@@ -192,6 +192,76 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
   EXPECT_FALSE(exists("r.jsonl"));
 }
 
+TEST_F(BadInput, AnOutputIsNeverAnInput) {
+  const std::string good = test::read_all(file("good.npy"));
+  std::filesystem::create_symlink(file("good.npy"), file("link.npy"));
+  for (const std::string out : {"good.npy", "./good.npy", "link.npy"}) {
+    expect_refused("match --method seqcnnslam --exclude 10 --query good.npy --out " + out,
+                   {"destroy an input"});
+    expect_refused("run --source wide.npy --reference good.npy --out " + out, {"destroy an input"});
+  }
+  EXPECT_EQ(test::read_all(file("good.npy")), good);
+  std::filesystem::create_directory(file("drive"));
+  folder_.write("drive/0.pgm", "P5 1 1 255\nx");
+  expect_refused("describe --source drive --out drive/0.pgm", {"destroy an input"});
+}
+
+TEST_F(BadInput, OutputPathsAreCheckedWithEverythingElse) {
+  expect_refused("match --method x --query none.npy --ds 0 --out none/m.csv",
+                 {"'x'", "none.npy", "ds: 0", "none/m.csv"});
+  expect_refused("run --source good.npy --ds 0 --out none/x --pictures /dev/null/p --fps 0",
+                 {"ds: 0", "none/x", "/dev/null", "fps"});
+  expect_refused("describe --source none --out none/d.npy", {"none: ", "none/d.npy"});
+}
+
+TEST_F(BadInput, StandardStreamsThatAreFullOrClosed) {
+  EXPECT_EQ(run("plan >/dev/full").exit_code, 1);
+  EXPECT_EQ(run("--help >/dev/full").exit_code, 1);
+  const std::string match =
+      "match --method seqcnnslam --reference good.npy --query good.npy --out m.csv ";
+  EXPECT_EQ(run(match + "2>&-").exit_code, 0);
+  EXPECT_EQ(run(match + "<&- 2>&-").exit_code, 0);
+  EXPECT_EQ(test::read_all(file("m.csv")).find("seqloop:"), std::string::npos);
+}
+
+TEST_F(BadInput, TextFilesThatAreNone) {
+  std::filesystem::create_directory(file("folder"));
+  const std::string match = "--reference good.npy --query good.npy --config ";
+  for (const std::string text : {"folder", "/dev/zero", "none"}) {
+    expect_match_refused(match + text, {text});
+    expect_refused("eval --matches " + text, {text});
+    expect_refused("eval --matches none --truth " + text, {text});
+  }
+  std::string deep = "[a";
+  for (int level = 0; level < 100'000; ++level) deep += ".a";
+  folder_.write("deep.toml", deep + "]\n");
+  expect_match_refused(match + "deep.toml", {"deep.toml:1", "nested"});
+}
+
+TEST_F(BadInput, AbsurdFrameNumbersCostNothing) {
+  folder_.write("list.csv",
+                "\xEF\xBB\xBFquery,match,score,uniqueness\n99999999999,99999999999,1,1\n");
+  const test::Outcome outcome = run("eval --json --matches list.csv --frames 999999999999");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\"correct\": 1"), std::string::npos) << outcome.out;
+  folder_.write("list.csv", "query,match,score,uniqueness\n18446744073709551615,1,1,1\n");
+  expect_refused("eval --matches list.csv", {"18446744073709551615"});
+}
+
+TEST_F(BadInput, AnInterruptedRunEndsInOrder) {
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    folder_.write("stop.sh", "\"$@\" & sleep 1; kill -" + signal + " $!; wait $!\n");
+    const std::string command = "cd '" + folder_.path().string() +
+                                "' && bash -m stop.sh '" SEQLOOP_BINARY
+                                "' run --pace live --fps 0.01 --source good.npy --exclude 20 "
+                                "--out r.jsonl 2>stderr.txt";
+    EXPECT_EQ(std::system(command.c_str()), 0) << signal << test::read_all(file("stderr.txt"));
+    EXPECT_NE(test::read_all(file("stderr.txt")).find("frames:"), std::string::npos) << signal;
+    EXPECT_TRUE(exists("r.jsonl"));
+    EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
+  }
+}
+
 TEST_F(BadInput, MatchListsAndTruths) {
   folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n1,2,0.5,0.5\n");
   expect_refused("eval --matches list.csv", {"twice"});

@@ -76,6 +76,57 @@ TEST_F(StreetDrive, SurvivesDamageInTheMiddle) {
     EXPECT_EQ(json.contains("fault"), bad);
   }
   EXPECT_EQ(frame, 120U);
+
+  // What is described first and matched then gets the same answers.
+  for (const std::string drive : {"reference", "query"}) {
+    ASSERT_EQ(run("describe --source drive/" + drive + " --out " + drive + ".npy").exit_code, 0);
+  }
+  ASSERT_EQ(run("match --method seqcnnslam --ds 10 --reference reference.npy --query query.npy "
+                "--out m.csv")
+                .exit_code,
+            0);
+  std::istringstream again(test::read_all(file("r.jsonl")));
+  std::string answers = "query,match\n";
+  for (std::string line; std::getline(again, line);) {
+    const auto json = nlohmann::json::parse(line);
+    if (json["match"].is_null()) continue;
+    answers += json["frame"].dump() + ',' + json["match"].dump() + '\n';
+  }
+  std::istringstream list(test::read_all(file("m.csv")));
+  std::string matched;
+  for (std::string line; std::getline(list, line);) {
+    matched += line.substr(0, line.find(',', line.find(',') + 1)) + '\n';
+  }
+  EXPECT_EQ(matched, answers);
+}
+
+TEST_F(StreetDrive, BlackFramesMatchNothing) {
+  make("--frames 120 --drives localise --format png");
+  const auto blacken = [&](const std::string& drive, int first) {
+    for (int frame = first; frame < first + 8; ++frame) {
+      const std::string number = std::to_string(1'000'000 + frame).substr(1);
+      const std::string name = "drive/" + drive + '/' + number;
+      ASSERT_TRUE(std::filesystem::remove(file(name + ".png")));
+      folder_.write(name + ".pgm", "P5 160 90 255\n" + std::string(160U * 90U, '\0'));
+    }
+  };
+  blacken("reference", 20);
+  blacken("query", 80);
+  ASSERT_EQ(run("run --source drive/query --reference drive/reference --method seqcnnslam --ds 6 "
+                "--out r.jsonl")
+                .exit_code,
+            0);
+  std::istringstream text(test::read_all(file("r.jsonl")));
+  std::size_t errors = 0;
+  for (std::string line; std::getline(text, line);) {
+    const auto json = nlohmann::json::parse(line);
+    errors += json["status"] == "frame_error" ? 1U : 0U;
+    if (json["status"] != "match") continue;
+    const auto frame = json["frame"].get<int>();
+    const auto place = json["match"].get<int>();
+    EXPECT_FALSE(frame >= 75 && frame <= 92 && place >= 15 && place <= 32) << line;
+  }
+  EXPECT_EQ(errors, 8U);
 }
 
 }  // namespace

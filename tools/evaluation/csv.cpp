@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
+#include "files/text_file.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
@@ -57,12 +56,7 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
 }
 
 CsvTable CsvTable::read(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    throw SetupError({file.string(), "cannot be read"});
-  }
-  return {text, file.string()};
+  return {files::read_text(file), file.string()};
 }
 
 std::size_t CsvTable::column(std::string_view header) const {
@@ -74,8 +68,11 @@ std::size_t CsvTable::column(std::string_view header) const {
 }
 
 std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
+  constexpr std::uint64_t most = std::uint64_t{1} << 62U;
   std::uint64_t value = 0;
-  if (!parse(lines_[row][column], value)) refuse(row, column, "a whole number");
+  if (!parse(lines_[row][column], value) || value > most) {
+    refuse(row, column, "a whole number up to 2^62");
+  }
   return value;
 }
 

@@ -8,7 +8,7 @@ namespace seqloop::evaluation {
 
 Truth Truth::identity(std::uint64_t frames) {
   Truth truth;
-  for (std::uint64_t frame = 0; frame < frames; ++frame) truth.places_[frame] = {frame};
+  truth.identity_frames_ = frames;
   return truth;
 }
 
@@ -25,11 +25,12 @@ Truth Truth::from_csv(const CsvTable& table) {
 
 bool Truth::right(std::uint64_t query, std::uint64_t match,
                   std::uint64_t tolerance) const noexcept {
-  const auto found = places_.find(query);
-  if (found == places_.end()) return false;
-  return std::ranges::any_of(found->second, [&](std::uint64_t place) {
+  const auto near = [&](std::uint64_t place) {
     return std::max(place, match) - std::min(place, match) <= tolerance;
-  });
+  };
+  if (identity_frames_) return query < *identity_frames_ && near(query);
+  const auto found = places_.find(query);
+  return found != places_.end() && std::ranges::any_of(found->second, near);
 }
 
 }  // namespace seqloop::evaluation

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "evaluation/csv.hpp"
@@ -19,13 +20,16 @@ class Truth {
   static Truth from_csv(const CsvTable& table);
 
   /// Frames that have a place.
-  [[nodiscard]] std::uint64_t frames() const noexcept { return places_.size(); }
+  [[nodiscard]] std::uint64_t frames() const noexcept {
+    return identity_frames_.value_or(places_.size());
+  }
 
   /// @param tolerance frames
   [[nodiscard]] bool right(std::uint64_t query, std::uint64_t match,
                            std::uint64_t tolerance) const noexcept;
 
  private:
+  std::optional<std::uint64_t> identity_frames_;  // set: frame i shows place i
   std::map<std::uint64_t, std::vector<std::uint64_t>> places_;
 };
 

@@ -15,6 +15,7 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/drives.hpp"
 #include "seqloop/latency_histogram.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -143,7 +144,7 @@ void bench(const BenchSettings& settings, Faults faults) {
   if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
   refuse(std::move(faults));
   opencv::use_threads(1);
-  fmt::print(stderr, "seqloop: {}\n", condition_line());
+  say("{}", condition_line());
   std::vector<Contender> all;
   if (settings.only != "step") time_describing(settings, all);
   if (settings.only != "describe") time_steps(settings, all);
@@ -174,7 +175,7 @@ void bench(const BenchSettings& settings, Faults faults) {
 Verb bench_verb() {
   const auto settings = std::make_shared<BenchSettings>();
   Verb verb{"bench",
-            "Time the stages on this machine, on one thread, rivals in the same run",
+            "Time describing (beside --model) and a step on this machine, on one thread",
             {},
             [settings](Faults faults) { bench(*settings, std::move(faults)); }};
   verb.options.flag("json", settings->json, "print JSON");

@@ -4,10 +4,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
+
+#include "files/text_file.hpp"
+#include "seqloop/verb.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -137,6 +138,15 @@ class Reader {
 Faults apply_config_text(std::string_view text, const std::string& name, const OptionTable& table,
                          const std::set<std::string>& given,
                          const std::vector<std::string>& known) {
+  // The parser recurses once a level, and so do we; no setting lies deeper than one table.
+  constexpr std::ptrdiff_t most_dots = 200;
+  for (std::size_t line = 1, at = 0; at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    if (std::ranges::count(text.substr(at, end - at), '.') > most_dots) {
+      return {{name + ":" + std::to_string(line), "nested too deeply"}};
+    }
+    at = end + 1;
+  }
   try {
     Reader reader(name, table, given, known);
     reader.read(toml::parse(text), "");
@@ -150,12 +160,11 @@ Faults apply_config_text(std::string_view text, const std::string& name, const O
 Faults apply_config_file(const std::filesystem::path& file, const OptionTable& table,
                          const std::set<std::string>& given,
                          const std::vector<std::string>& known) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    return {{file.string(), "cannot be read", "give --config a TOML file"}};
-  }
-  return apply_config_text(text, file.string(), table, given, known);
+  Faults faults;
+  collect(faults, [&] {
+    faults = apply_config_text(files::read_text(file), file.string(), table, given, known);
+  });
+  return faults;
 }
 
 }  // namespace seqloop::program

@@ -6,7 +6,10 @@
 
 #include "files/npy_file.hpp"
 #include "seqloop/drives.hpp"
+#include "seqloop/interruption.hpp"
+#include "seqloop/outputs.hpp"
 #include "seqloop/progress.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -29,26 +32,35 @@ void describe(const DescribeSettings& settings, Faults faults) {
   } else {
     collect(faults, [&] { source = open_drive(settings.source, "source", false, settings.drive); });
   }
-  if (settings.out.empty()) faults.push_back({"out", "not given", "--out D.npy"});
+  refuse_overwriting(faults, settings.out, {settings.source});
+  if (settings.out.empty()) {
+    faults.push_back({"out", "not given", "--out D.npy"});
+  } else {
+    const std::size_t size = describer ? describer->size() : 1;
+    collect(faults, [&] { out = std::make_unique<files::NpyWriter>(settings.out, size); });
+  }
   refuse(std::move(faults));
-  out = std::make_unique<files::NpyWriter>(settings.out, describer->size());
 
   std::size_t unreadable = 0;
+  std::size_t blank = 0;
   std::vector<float> descriptor(describer->size());
   Progress progress("describing", source->frame_count());
   Frame frame;
   for (Grab grab = source->grab(frame); grab != Grab::end; grab = source->grab(frame)) {
+    stop_if_interrupted();
     std::string_view fault = frame.fault;
-    if (grab == Grab::frame &&
-        describer->describe(frame.image, descriptor) == Description::failed) {
-      fault = describer->last_fault();
+    Description description = Description::failed;
+    if (grab == Grab::frame) {
+      description = describer->describe(frame.image, descriptor);
+      if (description == Description::failed) fault = describer->last_fault();
     }
-    if (!fault.empty()) {
+    if (description == Description::failed) {
       // A row of zeros keeps the rows in step with the frames.
       std::ranges::fill(descriptor, 0.0F);
       ++unreadable;
       progress.tell(fmt::format("frame {}: {}", frame.index, fault));
     }
+    if (description == Description::blank) ++blank;
     out->append(descriptor);
     progress.step();
   }
@@ -59,10 +71,9 @@ void describe(const DescribeSettings& settings, Faults faults) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
   out->commit();
-  fmt::print(
-      stderr, "seqloop: {} frames of {} values in {}{}\n", rows, descriptor.size(),
-      settings.out.string(),
-      unreadable == 0 ? "" : fmt::format("; {} unreadable ones are rows of zeros", unreadable));
+  say("{} frames of {} values in {}", rows, descriptor.size(), settings.out.string());
+  if (unreadable > 0) say("{} unreadable frames are rows of zeros", unreadable);
+  if (blank > 0) say("{} blank frames, without any feature, are rows of zeros", blank);
 }
 
 }  // namespace

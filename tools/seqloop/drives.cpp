@@ -13,6 +13,7 @@
 #include "opencv/source.hpp"
 #include "opencv/threads.hpp"
 #include "seqloop/config_file.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -80,7 +81,11 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
     };
     options.add(std::move(option));
   }
-  options.number("fps", settings.fps, "frames a second of an image folder [10]");
+  options.add({"fps", ValueKind::number, "frames a second of an image folder [10]",
+               [&settings](std::string_view value) {
+                 settings.fps = parse_number(value);
+                 if (settings.fps <= 0.0) throw std::invalid_argument("it must be above 0");
+               }});
 }
 
 std::unique_ptr<Describer> open_describer(const DriveSettings& settings) {
@@ -127,7 +132,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
 
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
   for (const std::string& note : source.notes()) {
-    fmt::print(stderr, "seqloop: {}: {}\n", path.string(), note);
+    say("{}: {}", path.string(), note);
   }
 }
 

@@ -1,6 +1,8 @@
 // The program: takes the command line apart, hands it to one verb, and turns what comes back into
 // messages and an exit code.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,6 +13,8 @@
 #include "opencv/silence.hpp"
 #include "seqloop/build_info.hpp"
 #include "seqloop/config_file.hpp"
+#include "seqloop/interruption.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace {
@@ -128,7 +132,7 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "seqloop: command line: {}; see seqloop --help\n", error.what());
+    say("command line: {}; see seqloop --help", error.what());
     return bad_usage;
   }
   for (std::size_t i = 0; i < verbs.size(); ++i) {
@@ -139,21 +143,37 @@ int run_program(int argc, char** argv) {
   return done;
 }
 
+/// A file that is opened must not become standard error because that was closed.
+void keep_standard_streams() {
+  for (int descriptor = open("/dev/null", O_RDWR); descriptor >= 0;
+       descriptor = open("/dev/null", O_RDWR)) {
+    if (descriptor <= STDERR_FILENO) continue;
+    close(descriptor);
+    return;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    seqloop::opencv::silence_opencv();
-    return run_program(argc, argv);
+    keep_standard_streams();
+    take_interruptions();
+    opencv::silence_opencv();
+    const int exit_code = run_program(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output: cannot be written");
+    }
+    return exit_code;
   } catch (const SetupError& error) {
     for (const Fault& fault : error.faults()) {
-      fmt::print(stderr, "seqloop: {}\n", to_string(fault));
+      say("{}", to_string(fault));
     }
     return bad_usage;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "seqloop: memory: there is not enough\n");
+    say("memory: there is not enough");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "seqloop: {}\n", error.what());
+    say("{}", error.what());
   }
   return failed_while_running;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files/descriptor_source.hpp"
+#include "seqloop/interruption.hpp"
 #include "seqloop/progress.hpp"
 
 namespace seqloop::program {
@@ -15,12 +16,26 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
-void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, bool standardise) {
-  std::vector<float> descriptor(map.descriptor_size(), 0.0F);
+MapFiller::MapFiller(PlaceMap& map, bool blank_is_unreadable)
+    : map_(&map), blank_is_unreadable_(blank_is_unreadable), last_(map.descriptor_size(), 0.0F) {}
+
+bool MapFiller::add(std::span<const float> descriptor) {
+  const bool blank = std::ranges::all_of(descriptor, [](float value) { return value == 0.0F; });
+  if (!descriptor.empty() && !(blank && blank_is_unreadable_)) {
+    std::ranges::copy(descriptor, last_.begin());
+  }
+  return map_->add(last_);
+}
+
+void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
+              const MatcherConfig& config) {
+  MapFiller filler(map, config.blank_is_unreadable);
+  std::vector<float> descriptor(map.descriptor_size());
   Progress progress("mapping", drive.frame_count());
   std::size_t readable = 0;
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
+    stop_if_interrupted();
     std::string_view fault = frame.fault;
     if (grab == Grab::frame && !frame.descriptor.empty()) {
       std::ranges::copy(frame.descriptor, descriptor.begin());
@@ -33,7 +48,8 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, bool stan
     } else {
       progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     }
-    if (!map.add(descriptor)) {
+    if (!filler.add(fault.empty() ? std::span<const float>(descriptor)
+                                  : std::span<const float>())) {
       throw SetupError({"max-places",
                         fmt::format("the reference has more frames than the map has room for, {}",
                                     map.capacity()),
@@ -43,13 +59,7 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, bool stan
   }
   progress.done();
   if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
-  if (standardise) map.standardise();
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw SetupError({folder.string(), "cannot be made: " + error.message()});
+  if (config.standardisation.on) map.standardise();
 }
 
 }  // namespace seqloop::program

@@ -11,8 +11,12 @@
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/drive_length.hpp"
+#include "seqloop/interruption.hpp"
+#include "seqloop/map_builder.hpp"
 #include "seqloop/matcher_settings.hpp"
+#include "seqloop/outputs.hpp"
 #include "seqloop/progress.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -40,17 +44,18 @@ void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
     ++changed;
   }
   if (changed > 0) {
-    fmt::print(stderr, "seqloop: {}: {} of {} rows were not unit length and have been made so\n",
-               name.string(), changed, matrix.rows);
+    say("{}: {} of {} rows were not unit length and have been made so", name.string(), changed,
+        matrix.rows);
   }
 }
 
-PlaceMap make_map(const files::Matrix& reference, bool standardise) {
+PlaceMap make_map(const files::Matrix& reference, const MatcherConfig& config) {
   PlaceMap map({reference.rows, reference.columns});
+  MapFiller filler(map, config.blank_is_unreadable);
   for (std::size_t row = 0; row < reference.rows; ++row) {
-    if (!map.add(reference.row(row))) break;
+    if (!filler.add(reference.row(row))) break;
   }
-  if (standardise) map.standardise();
+  if (config.standardisation.on) map.standardise();
   return map;
 }
 
@@ -76,39 +81,43 @@ void match(const MatchSettings& settings, Faults faults) {
     collect(faults, [&] { query = files::read_npy(settings.query); });
   }
   if (!closing) collect(faults, [&] { reference = files::read_npy(settings.reference); });
-  if (settings.out.empty()) faults.push_back({"out", "not given", "--out M.csv"});
+  std::unique_ptr<files::OutputFile> out;
+  refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
+  if (settings.out.empty()) {
+    faults.push_back({"out", "not given", "--out M.csv"});
+  } else {
+    collect(faults, [&] { out = std::make_unique<files::OutputFile>(settings.out); });
+  }
   if (query && reference && query->columns != reference->columns) {
     faults.push_back({"reference, query",
                       fmt::format("{} values in a row of one, {} in a row of the other",
                                   reference->columns, query->columns),
                       "describe both with the same model and layer"});
   }
-  if (faults.empty()) {
+  if (query && (closing || reference) && validate(config).empty()) {
     check_length(faults, config, query->rows, reference ? reference->rows : query->rows);
   }
   refuse(std::move(faults));
 
   normalise_rows(*query, settings.query);
   if (reference) normalise_rows(*reference, settings.reference);
-  PlaceMap map = closing ? PlaceMap({query->rows, query->columns})
-                         : make_map(*reference, config.standardisation.on);
+  PlaceMap map = closing ? PlaceMap({query->rows, query->columns}) : make_map(*reference, config);
   reference.reset();
   Detector detector(config, map);
-  files::OutputFile out(settings.out);
-  out.write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
+  out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
   for (std::size_t row = 0; row < query->rows; ++row) {
+    stop_if_interrupted();
     const FrameReport report = detector.step(query->row(row));
     progress.step();
     if (!report.match) continue;
-    out.write(csv_row(report));
+    out->write(csv_row(report));
     ++answered;
   }
   progress.done();
-  out.commit();
-  fmt::print(stderr, "seqloop: {} of {} frames answered, in {}\n", answered, query->rows,
-             settings.out.string());
+  out->commit();
+  say("{} of {} frames answered, in {}", answered, query->rows, settings.out.string());
 }
 
 }  // namespace

@@ -46,11 +46,11 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        "weigh features by their running statistics [on, off under --paper]",
        [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
   options.count("standardise-prior", config.standardisation.prior_frames,
-                "frames that the map's statistics count for in a new drive");
+                "frames that the map's statistics count for in a new drive [20]");
   options.count("standardise-horizon", config.standardisation.horizon,
-                "frames after which statistics have mostly moved on");
+                "frames after which statistics have mostly moved on [100]");
   options.number("max-uniqueness", config.max_uniqueness,
-                 "a match is reported up to this uniqueness, 0 to 1");
+                 "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
   options.on_off("enhance", settings.enhance, "local contrast enhancement [off]");
   options.text("arithmetic", settings.arithmetic, "float [float]");
 }
@@ -59,6 +59,7 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
   MatcherConfig config = settings.config;
   config.use = use;
   config.standardisation.on = settings.standardise.value_or(!settings.paper);
+  config.blank_is_unreadable = !settings.paper;
   resolve_method(settings.method, config, faults);
   if (settings.enhance) {
     faults.push_back({"enhance", "contrast enhancement is not in this version", "--enhance off"});

@@ -33,6 +33,9 @@ void plan(const PlanSettings& settings, Faults faults) {
   const std::vector<BufferSize> map = PlaceMap::plan(capacity);
   const std::vector<BufferSize> detector = Detector::plan(config, capacity);
   const Work most = Detector::most_work(config, capacity);
+  fmt::print("{}, ds {}, {} places of {} values, {}\n\n", settings.matcher.method,
+             config.sequence_length, capacity.places, capacity.descriptor_size,
+             settings.close_loops ? "closing loops" : "localising");
   fmt::print("           bytes  buffer\n");
   print_buffers("map", map);
   print_buffers("detector", detector);

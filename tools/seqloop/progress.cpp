@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "seqloop/say.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -27,12 +29,12 @@ void Progress::step() {
 }
 
 void Progress::tell(std::string_view message) {
-  if (shown_) fmt::print(stderr, "{}", clear_line);
-  fmt::print(stderr, "seqloop: {}\n", message);
+  if (shown_) say_raw(clear_line);
+  say("{}", message);
 }
 
 void Progress::done() {
-  if (shown_) fmt::print(stderr, "{}", clear_line);
+  if (shown_) say_raw(clear_line);
 }
 
 void Progress::draw() const {
@@ -40,13 +42,13 @@ void Progress::draw() const {
   const std::chrono::duration<double> passed = drawn_ - start_;
   const double rate = static_cast<double>(done_) / std::max(passed.count(), 1e-9);
   if (!frames_ || *frames_ == 0) {
-    fmt::print(stderr, "{}{} frame {}, {:.0f} frames/s", clear_line, doing_, done_, rate);
+    say_raw(fmt::format("{}{} frame {}, {:.0f} frames/s", clear_line, doing_, done_, rate));
     return;
   }
   const std::uint64_t filled = std::min(width, done_ * width / *frames_);
   const double left = static_cast<double>(*frames_ - std::min(*frames_, done_)) / rate;
-  fmt::print(stderr, "{}{} [{:#<{}}{:.<{}}] {}/{}, {:.0f} frames/s, {:.0f} s left", clear_line,
-             doing_, "", filled, "", width - filled, done_, *frames_, rate, left);
+  say_raw(fmt::format("{}{} [{:#<{}}{:.<{}}] {}/{}, {:.0f} frames/s, {:.0f} s left", clear_line,
+                      doing_, "", filled, "", width - filled, done_, *frames_, rate, left));
 }
 
 }  // namespace seqloop::program

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -11,12 +11,15 @@
 #include "seqloop/drive_length.hpp"
 #include "seqloop/drives.hpp"
 #include "seqloop/frame_json.hpp"
+#include "seqloop/interruption.hpp"
 #include "seqloop/map_builder.hpp"
 #include "seqloop/matcher_settings.hpp"
+#include "seqloop/outputs.hpp"
 #include "seqloop/pictures.hpp"
 #include "seqloop/pipeline.hpp"
 #include "seqloop/progress.hpp"
 #include "seqloop/run_summary.hpp"
+#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -36,17 +39,18 @@ struct RunSettings {
 
 class SteadyClock : public Clock {
  public:
+  static constexpr Nanoseconds slice = std::chrono::milliseconds(50);
+
   Nanoseconds now() noexcept override {
     return std::chrono::steady_clock::now().time_since_epoch();
   }
   void sleep_until(Nanoseconds moment) noexcept override {
-    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(moment));
+    // In slices, so that a long wait can be interrupted.
+    while (now() < moment && !interrupted()) {
+      std::this_thread::sleep_for(std::min<Nanoseconds>(moment - now(), slice));
+    }
   }
 };
-
-volatile std::sig_atomic_t stopped = 0;
-
-void stop(int /*signal*/) { stopped = 1; }
 
 /// Everything that a run needs, opened and checked.
 struct Setup {
@@ -54,6 +58,7 @@ struct Setup {
   std::unique_ptr<Describer> describer;  ///< none when nothing has to be described
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<FrameSource> reference;  ///< none when loops are closed
+  std::unique_ptr<files::OutputFile> out;
   std::size_t descriptor_size = 0;
   std::size_t places = 0;
 };
@@ -67,6 +72,9 @@ std::size_t places_for(const RunSettings& settings, const FrameSource& drive) {
 
 Setup set_up(const RunSettings& settings, Faults faults) {
   Setup setup;
+  refuse_overwriting(faults, settings.out, {settings.source, settings.reference});
+  collect(faults, [&] { setup.out = std::make_unique<files::OutputFile>(settings.out); });
+  if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
   const bool closing = settings.reference.empty();
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   if (!(settings.budget_ms > 0.0)) {
@@ -112,18 +120,17 @@ void write_pictures(const RunSettings& settings, const PictureRecorder& recorder
   const bool pairs = recorder.write_pairs(
       settings.pictures, reopen(settings.source),
       reopen(settings.reference.empty() ? settings.source : settings.reference));
-  fmt::print(stderr, "seqloop: pictures in {}: difference_matrix.png{}\n",
-             settings.pictures.string(),
-             pairs ? ", matches.png" : "; no matched pictures to show side by side");
+  say("pictures in {}: difference_matrix.png{}", settings.pictures.string(),
+      pairs ? ", matches.png" : "; no matched pictures to show side by side");
 }
 
 void run(const RunSettings& settings, Faults faults) {
   const Setup setup = set_up(settings, std::move(faults));
-  files::OutputFile out(settings.out);
+  files::OutputFile& out = *setup.out;
   if (!settings.pictures.empty()) make_folder(settings.pictures);
   PlaceMap map({setup.places, setup.descriptor_size});
   if (setup.reference) {
-    fill_map(map, *setup.reference, setup.describer.get(), setup.config.standardisation.on);
+    fill_map(map, *setup.reference, setup.describer.get(), setup.config);
     tell_notes(settings.reference, *setup.reference);
   }
   Detector detector(setup.config, map);
@@ -134,10 +141,8 @@ void run(const RunSettings& settings, Faults faults) {
       std::chrono::duration<double, std::milli>(settings.budget_ms)));
   PictureRecorder recorder;
 
-  std::signal(SIGINT, stop);
-  std::signal(SIGTERM, stop);
   Progress progress("running", setup.source->frame_count());
-  while (stopped == 0) {
+  while (!interrupted()) {
     const std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
     const bool deadline_missed = summary.add(*processed);
@@ -156,7 +161,7 @@ void run(const RunSettings& settings, Faults faults) {
   }
   out.commit();
   if (!settings.pictures.empty()) write_pictures(settings, recorder, map);
-  fmt::print(stderr, "seqloop: {}", summary.text());
+  say_raw("seqloop: " + summary.text());
 }
 
 Pace parse_pace(std::string_view text) {

@@ -1,0 +1,32 @@
+#include "files/text_file.hpp"
+
+#include <fstream>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::files {
+
+std::string read_text(const std::filesystem::path& path) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20U;
+  const std::string shown = path.string();
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw SetupError(Fault{shown, "does not exist", "check the name"});
+  }
+  // A device or a pipe could go on for ever.
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw SetupError(Fault{shown, "is not a file", "give a text file"});
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error || bytes > most_bytes) {
+    throw SetupError(Fault{shown, error ? error.message() : "is larger than 64 MiB"});
+  }
+  std::string text(static_cast<std::size_t>(bytes), '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(bytes));
+  if (!stream) throw SetupError(Fault{shown, "cannot be read", "check its permissions"});
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  return text;
+}
+
+}  // namespace seqloop::files
