@@ -38,12 +38,15 @@ std::size_t history(const MatcherConfig& config) {
   return std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
 }
 
-bool finite(std::span<const float> values) {
-  return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
-}
-
-bool blank(std::span<const float> values) {
-  return std::ranges::all_of(values, [](float value) { return value == 0.0F; });
+/// Whether a descriptor is what Algorithm 1 gives: finite, and of unit length or all zero. One that
+/// is not would spoil the running statistics for the rest of the drive.
+bool well_formed(std::span<const float> values, bool zero_allowed) {
+  constexpr double tolerance = 0.01;
+  double squares = 0.0;
+  for (const float value : values) {
+    squares += static_cast<double>(value) * static_cast<double>(value);
+  }
+  return std::abs(squares - 1.0) <= tolerance || (zero_allowed && squares == 0.0);
 }
 
 }  // namespace
@@ -102,8 +105,9 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   const std::size_t after_centre = config_.sequence_length - trajectories_.centre();
 
   const bool readable = take_query(descriptor);
-  if (config_.use == Use::close_loops) report.map_full = !map_->add(newest_query());
-  report.work.distances = fill_newest();
+  if (config_.use == Use::close_loops)
+    report.map_full = !map_->add(newest_query().first(map_->descriptor_size()));
+  report.work.distances = fill_columns();
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
   if (report.newest >= after_centre) report.frame = report.newest - after_centre;
   if (report.newest < config_.sequence_length) return report;
@@ -135,8 +139,8 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 bool Detector::take_query(std::span<const float> descriptor) noexcept {
   const std::uint64_t frame = slices_.frames();
   const std::span<float> query = slices_.push();
-  if (descriptor.size() != map_->descriptor_size() || !finite(descriptor) ||
-      (config_.blank_is_unreadable && blank(descriptor))) {
+  if (descriptor.size() != map_->descriptor_size() ||
+      !well_formed(descriptor, !config_.blank_is_unreadable)) {
     if (frame == 0) {
       std::ranges::fill(query, 0.0F);
     } else {
@@ -163,12 +167,18 @@ std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
   return static_cast<std::size_t>(std::min<std::uint64_t>(centre - config_.exclude, map_->size()));
 }
 
-/// Where all rows are candidates, every difference that the newest frame can be asked for while it
-/// is in the window will be: computing them as it arrives spreads the work evenly.
-std::size_t Detector::fill_newest() noexcept {
+/// Where all rows are candidates, every difference that a frame can be asked for while it is in the
+/// window will be: computing them as it arrives spreads the work evenly. Where loops are closed
+/// onto the window itself, a column grows by the place that has just been added.
+std::size_t Detector::fill_columns() noexcept {
   if (config_.candidates != Candidates::all) return 0;
   const std::uint64_t newest = slices_.frames() - 1;
-  return slices_.fill(*map_, newest, 0, rows_searched(newest + trajectories_.centre()));
+  std::uint64_t frame = newest - std::min<std::uint64_t>(newest, config_.sequence_length);
+  std::size_t computed = 0;
+  for (; frame <= newest; ++frame) {
+    computed += slices_.fill(*map_, frame, 0, rows_searched(frame + trajectories_.centre()));
+  }
+  return computed;
 }
 
 /// Computes what lines through the run can touch.

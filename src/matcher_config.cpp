@@ -1,6 +1,8 @@
 #include "seqloop/matcher_config.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "seqloop/trajectories.hpp"
@@ -51,8 +53,8 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "ds", config.sequence_length, 1, 2'000);
   check_velocities(faults, config);
   check_range(faults, "rwindow", config.rwindow, 0, many);
-  check_range(faults, "k", config.k, 1, 100'000);
-  check_range(faults, "initial-k", config.initial_k, 1, 100'000);
+  check_range(faults, "k", config.k, 1, 1'000);
+  check_range(faults, "initial-k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
   check_range(faults, "exclude", config.exclude, 1, many);
@@ -66,8 +68,10 @@ Faults validate(const MatcherConfig& config) {
 }
 
 Faults validate(const Capacity& capacity) {
+  constexpr auto most_places = static_cast<std::size_t>(
+      std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
   Faults faults;
-  check_range(faults, "max-places", capacity.places, 1, std::size_t{1} << 32U);
+  check_range(faults, "max-places", capacity.places, 1, most_places);
   check_range(faults, "descriptor-size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
   return faults;
 }

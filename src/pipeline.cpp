@@ -1,5 +1,7 @@
 #include "seqloop/pipeline.hpp"
 
+#include <algorithm>
+
 namespace seqloop {
 
 Pipeline::Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
@@ -20,8 +22,10 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   processed.times.grab = grabbed - began;
   if (pace_ == Pace::live) {
     if (!start_) start_ = grabbed;
-    const std::chrono::duration<double> due(processed.frame.time_s);
-    clock_->sleep_until(*start_ + std::chrono::duration_cast<Nanoseconds>(due));
+    const std::chrono::duration<double> time(processed.frame.time_s);
+    const Nanoseconds due = *start_ + std::chrono::duration_cast<Nanoseconds>(time);
+    processed.times.late = std::max(grabbed - due, Nanoseconds(0));
+    clock_->sleep_until(due);
     grabbed = clock_->now();
   }
 
@@ -31,7 +35,7 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   const Nanoseconds matched = clock_->now();
 
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
-    processed.fault = "its descriptor is all zero, not finite, or of the wrong size";
+    processed.fault = "its descriptor is all zero, not of unit length, or of the wrong size";
   }
   processed.times.describe = described - grabbed;
   processed.times.match = matched - described;

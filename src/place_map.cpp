@@ -1,6 +1,7 @@
 #include "seqloop/place_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "seqloop/difference.hpp"
@@ -36,13 +37,18 @@ PlaceMap::PlaceMap(Arena arena, const Capacity& capacity, ArenaMemory&& memory)
       places_(arena.take<float>("places", capacity.places * stride_)) {}
 
 bool PlaceMap::add(std::span<const float> descriptor) noexcept {
-  if (size_ == capacity_.places) return false;
+  if (size_ == capacity_.places || descriptor.size() != capacity_.descriptor_size) return false;
+  if (statistics_.frames() != 0) return false;
+  if (!std::ranges::all_of(descriptor, [](float value) { return std::isfinite(value); })) {
+    return false;
+  }
   std::ranges::copy(descriptor, places_.subspan(size_ * stride_, stride_).begin());
   ++size_;
   return true;
 }
 
 void PlaceMap::standardise() noexcept {
+  if (statistics_.frames() != 0) return;
   for (std::size_t row = 0; row < size_; ++row) {
     statistics_.observe(place(row).first(capacity_.descriptor_size));
   }

@@ -48,9 +48,11 @@ class Detector {
   ~Detector() = default;
 
   /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
-  /// @param descriptor [D] unit L2. Empty, of another size, with NaN or infinity, or all zero where
-  ///   `blank_is_unreadable`: the frame could not be read; it counts, the scene is taken to stand
-  ///   still, the gate is `frame_error`.
+  /// @param descriptor [D] unit L2. Empty, of another size, not of unit length (NaN and infinity
+  /// are
+  ///   not), or all zero where `blank_is_unreadable`: the frame could not be read. It counts, the
+  ///   scene is taken to stand still, and the gate is `frame_error`: the answer that was due, for
+  ///   the centre frame, is not given.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
@@ -67,7 +69,7 @@ class Detector {
 
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
-  [[nodiscard]] std::size_t fill_newest() noexcept;
+  [[nodiscard]] std::size_t fill_columns() noexcept;
   [[nodiscard]] std::size_t fill_window(std::uint64_t oldest, CandidateRun run,
                                         std::size_t rows) noexcept;
   void decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept;

@@ -21,11 +21,13 @@ enum class Gate : std::uint8_t {
 
 /// The best row of the map for a frame.
 struct Match {
-  std::size_t place = 0;    ///< row of the map at the centre column
-  float score = 0.0F;       ///< mean difference along the line, 0 .. 2; smaller is more certain
-  float uniqueness = 0.0F;  ///< score by the best rival's score, 0 .. 1, NaN where not defined
-  double velocity = 0.0;    ///< rows a frame
-  std::size_t head = 0;     ///< row of the map at the newest column
+  std::size_t place = 0;  ///< row of the map at the centre column
+  float score = 0.0F;     ///< mean difference along the line, 0 .. 2; smaller is more certain
+  /// Score by the best rival's score: 0 .. 1; above 1 or infinite when the rival of the last full
+  /// search had to stand in and is better; NaN where not defined.
+  float uniqueness = 0.0F;
+  double velocity = 0.0;  ///< rows a frame
+  std::size_t head = 0;   ///< row of the map at the newest column
 };
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.

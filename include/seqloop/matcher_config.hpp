@@ -41,8 +41,8 @@ struct MatcherConfig {
   double vmin = 0.8;                 ///< slowest trajectory, rows a frame; 0 .. vmax
   double vmax = 1.2;                 ///< fastest trajectory, rows a frame; vmin .. 10
   std::size_t rwindow = 10;          ///< rows around the best that do not count as rivals; >= 0
-  std::size_t k = 10;                ///< A-: number of ranges; >= 1
-  std::size_t initial_k = 30;        ///< O-: K0, where K starts and falls back to; >= 1
+  std::size_t k = 10;                ///< A-: number of ranges; 1 .. 1,000
+  std::size_t initial_k = 30;        ///< O-: K0, where K starts and falls back to; 1 .. 1,000
   std::size_t num = 16;              ///< a range holds num + 1 rows; >= 1
   std::size_t reinit = 450;          ///< L: every L-th matched frame searches all rows; >= 1
   std::size_t exclude = 100;         ///< closing loops: newest frames that are no places; >= 1

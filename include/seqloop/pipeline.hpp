@@ -18,7 +18,8 @@ struct StageTimes {
   Nanoseconds grab{0};
   Nanoseconds describe{0};
   Nanoseconds match{0};
-  Nanoseconds total{0};
+  Nanoseconds total{0};  ///< the three of them
+  Nanoseconds late{0};   ///< at live pace: how long after its time the frame was grabbed
 };
 
 /// What the pipeline says of one frame.

@@ -26,12 +26,13 @@ class PlaceMap {
 
   /// Appends a place.
   /// @param descriptor [D]; without NaN or infinity
-  /// @return false when the map is full: then nothing has changed
+  /// @return false when the map is full or standardised already, or the descriptor is of another
+  ///   size or not finite: then nothing has changed
   /// Work: D. Allocates: never.
   [[nodiscard]] bool add(std::span<const float> descriptor) noexcept;
 
   /// Takes the map's statistics and standardises every place by them, once all are there. Without
-  /// this call places are compared as they came.
+  /// this call places are compared as they came. A second call does nothing.
   /// Work: 5 N D. Allocates: never.
   void standardise() noexcept;
 

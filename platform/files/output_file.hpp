@@ -51,6 +51,9 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
+  /// Whether this is a device, a pipe or the standard output, which is written as it is.
+  [[nodiscard]] bool direct() const noexcept { return partial_.empty(); }
+
  private:
   void open_beside();
 

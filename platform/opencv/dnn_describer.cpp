@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "opencv/detail/model.hpp"
+#include "opencv/detail/one_line.hpp"
 #include "opencv/detail/picture_blob.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
@@ -97,7 +98,8 @@ class DnnDescriber::Impl {
       throw SetupError(Fault{settings.model.string(),
                              "cannot be computed on " + std::to_string(layout.channels) + "x" +
                                  std::to_string(layout.height) + "x" +
-                                 std::to_string(layout.width) + " values (" + error.err + ")",
+                                 std::to_string(layout.width) + " values (" + one_line(error.err) +
+                                 ")",
                              "check the input size, and that the model's weights are there"});
     }
   }
@@ -216,7 +218,7 @@ Description DnnDescriber::describe(const Image& image, std::span<float> descript
     try {
       return impl_->describe(image, descriptor);
     } catch (const cv::Exception& error) {
-      return impl_->fail("OpenCV: " + error.err);
+      return impl_->fail("OpenCV: " + one_line(error.err));
     } catch (const std::exception& error) {
       return impl_->fail(error.what());
     }

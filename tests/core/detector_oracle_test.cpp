@@ -65,6 +65,15 @@ TEST_P(DetectorOracle, LocalisesAsDefined) {
   EXPECT_GT(answered, 1000U);
 }
 
+TEST_P(DetectorOracle, SearchesMapsLargerThanABlock) {
+  std::size_t answered = 0;
+  MatcherConfig config = paper(GetParam(), 12);
+  config.num = 200;
+  expect_same(oracle::drive(50, 700, 8, 0.3F), oracle::drive(50, 60, 8, 0.4F), config, 50,
+              answered);
+  EXPECT_EQ(answered, 48U);
+}
+
 TEST_P(DetectorOracle, ClosesLoopsAsDefined) {
   std::size_t answered = 0;
   std::uint32_t seed = 100;

@@ -1,6 +1,7 @@
 // What a step promises beside the right answer: bounded work, fixed memory, honest gates.
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "core/matcher.hpp"
 
@@ -39,6 +40,38 @@ TEST(Detector, NeverComputesMoreThanThePlanSays) {
       }
     }
   }
+}
+
+TEST(Detector, StaysWithinThePlanWhenLoopsAreClosedOntoTheWindowItself) {
+  for (const auto& [ds, exclude, vmin] :
+       {std::tuple{200U, 1U, 0.8}, std::tuple{100U, 5U, 0.5}, std::tuple{40U, 1U, 0.0}}) {
+    MatcherConfig config = paper(Candidates::all, ds, Use::close_loops);
+    config.exclude = exclude;
+    config.vmin = vmin;
+    const Work most = Detector::most_work(config, {300, 4});
+    for (const FrameReport& report : reports({}, oracle::drive(3, 300, 4), config)) {
+      EXPECT_LE(report.work.distances, most.distances) << ds;
+    }
+  }
+}
+
+TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
+  const oracle::Vectors drive = oracle::drive(6, 200, 16, 0.1F);
+  PlaceMap map = map_of(drive);
+  map.standardise();
+  MatcherConfig config;
+  config.candidates = Candidates::all;
+  Detector detector(config, map);
+  std::size_t right = 0;
+  for (std::size_t frame = 0; frame < 200; ++frame) {
+    std::vector<float> seen = drive[frame];
+    if (frame == 50) seen[3] = 1e6F;
+    if (frame == 60) seen[3] = 3e38F;
+    const FrameReport report = detector.step(seen);
+    EXPECT_EQ(report.gate == Gate::frame_error, frame == 50 || frame == 60);
+    right += report.match && report.match->place == *report.frame ? 1U : 0U;
+  }
+  EXPECT_EQ(right, 178U) << "all but the window and the two";
 }
 
 TEST(Detector, SpreadsTheExhaustiveWorkEvenly) {

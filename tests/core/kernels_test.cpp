@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -231,6 +232,84 @@ TEST(PlaceMap, SaysWhenItIsFullAndStaysAsItWas) {
   EXPECT_EQ(map.place(1)[1], 1.0F);
   EXPECT_EQ(map.place(1).size(), padded_size(3));
   EXPECT_EQ(map.place(1)[15], 0.0F);
+}
+
+TEST(PlaceMap, TakesOnlyWhatFits) {
+  PlaceMap map({3, 2});
+  EXPECT_FALSE(map.add(std::vector<float>(4000, 1.0F)));
+  EXPECT_FALSE(map.add(std::vector<float>(1, 1.0F)));
+  EXPECT_FALSE(map.add(std::vector<float>{1.0F, std::numeric_limits<float>::quiet_NaN()}));
+  EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F}));
+  EXPECT_TRUE(map.add(std::vector<float>{0.0F, 1.0F}));
+  map.standardise();
+  const float before = map.place(0)[0];
+  map.standardise();
+  EXPECT_EQ(map.place(0)[0], before);
+  EXPECT_FALSE(map.add(std::vector<float>{1.0F, 0.0F})) << "it would not be standardised";
+}
+
+TEST(ChangeDegree, EqualsEquationFourAndNamesItsEdges) {
+  TestArena memory;
+  DifferenceSlices slices(memory.arena, 3, 12, {1, 2});
+  ChangeDegree degree;
+  std::vector<std::vector<float>> frames;
+  const auto see = [&](float a, float b) {
+    frames.push_back({a, b});
+    const std::span<float> query = slices.push();
+    query[0] = a;
+    query[1] = b;
+    return degree.advance(slices, frames.size() - 1);
+  };
+  for (int frame = 0; frame < 11; ++frame) {
+    EXPECT_EQ(see(static_cast<float>(frame % 3), 1.0F), 1.0) << "fewer than 11 earlier frames";
+  }
+  const double given = see(5.0F, 2.0F);
+  double above = 0.0;
+  double below = 0.0;
+  const auto apart = [&](std::size_t a, std::size_t b) {
+    return std::hypot(static_cast<double>(frames[a][0] - frames[b][0]),
+                      static_cast<double>(frames[a][1] - frames[b][1]));
+  };
+  for (std::size_t i = 1; i <= 10; ++i) {
+    above += apart(11, i);
+    below += apart(10, i - 1);
+  }
+  EXPECT_NEAR(given, above / below, 1e-6) << "exactly 11 earlier frames";
+  for (int frame = 0; frame < 11; ++frame) (void)see(7.0F, 7.0F);
+  EXPECT_EQ(see(7.0F, 7.0F), 1.0) << "0/0: the robot stands";
+  EXPECT_EQ(see(8.0F, 7.0F), std::numeric_limits<double>::infinity()) << "x/0: it starts";
+}
+
+TEST(CandidateRanges, ClipUniteAndRankAsAlgorithmFourSays) {
+  TestArena memory;
+  MatcherConfig config;
+  config.candidates = Candidates::ranges;
+  config.k = 3;
+  config.num = 4;
+  CandidateRanges ranges(memory.arena, config);
+  const auto runs = [&](std::size_t rows) {
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (const CandidateRun run : ranges.choose(rows)) all.emplace_back(run.first, run.last);
+    return all;
+  };
+  using Runs = std::vector<std::pair<std::size_t, std::size_t>>;
+  constexpr float none = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "the first frame searches all";
+  std::vector<float> scores(20, none);
+  scores[0] = 0.3F;
+  scores[19] = 0.2F;
+  scores[10] = 0.1F;
+  scores[5] = 0.3F;  // as good as row 0, but higher
+  ranges.update(scores, 10, 1.0);
+  EXPECT_EQ(runs(20), (Runs{{0, 3}, {8, 13}, {17, 20}})) << "clipped at both ends";
+  std::ranges::fill(scores, none);
+  scores[10] = 0.1F;
+  scores[12] = 0.2F;
+  ranges.update(scores, 10, 1.0);
+  EXPECT_EQ(runs(20), (Runs{{8, 15}})) << "fewer rows than K, and they overlap";
+  ranges.update(scores, std::nullopt, 1.0);
+  EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "after a frame without an answer";
+  EXPECT_EQ(runs(0), Runs{}) << "an empty map";
 }
 
 TEST(LatencyHistogram, QuantilesAreWithinABucketOfTheSortedList) {

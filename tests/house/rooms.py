@@ -13,6 +13,10 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
            "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
 
 
+# Libraries that belong to one outside world.
+LIBRARIES = {"opencv2": "opencv"}
+
+
 def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
     room = file.parts[0]
     world = include.split("/")[0]
@@ -22,9 +26,10 @@ def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
             return not quoted and include not in OUTSIDE
         return world == "seqloop" and quoted or room == "src" and world == "Eigen"
     if room == "platform":
-        if not quoted:
-            return True
-        return world in ("seqloop", file.parts[1])
+        ours = world in ("seqloop", "opencv", "files", "linux", "evaluation", "street")
+        if quoted or ours:
+            return world in ("seqloop", file.parts[1])
+        return world not in LIBRARIES or LIBRARIES[world] == file.parts[1]
     return True
 
 
@@ -47,6 +52,8 @@ def prove_that_it_can_fail() -> None:
            "src/d.cpp": "  #  include <unistd.h>",
            "src/e.cpp": '#include "opencv/dnn_describer.hpp"',
            "platform/opencv/f.cpp": '#include "files/npy_file.hpp"',
+           "platform/opencv/k.cpp": "#include <files/npy_file.hpp>",
+           "platform/files/l.cpp": "#include <opencv2/core.hpp>",
            "platform/files/g.hpp": '#include "evaluation/csv.hpp"'}
     good = {"src/h.cpp": '#include <Eigen/Core>\n#include <vector>\n#include "seqloop/frame.hpp"',
             "platform/opencv/i.cpp": '#include <opencv2/core.hpp>\n#include "opencv/detail/j.hpp"'}

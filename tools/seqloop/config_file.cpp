@@ -142,7 +142,8 @@ Faults apply_config_text(std::string_view text, const std::string& name, const O
   constexpr std::ptrdiff_t most_dots = 200;
   for (std::size_t line = 1, at = 0; at < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    if (std::ranges::count(text.substr(at, end - at), '.') > most_dots) {
+    const std::string_view key = text.substr(at, std::min(text.find_first_of("=#", at), end) - at);
+    if (std::ranges::count(key, '.') > most_dots) {
       return {{name + ":" + std::to_string(line), "nested too deeply"}};
     }
     at = end + 1;

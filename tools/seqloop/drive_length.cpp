@@ -20,7 +20,7 @@ void check_length(Faults& faults, const MatcherConfig& config, std::uint64_t fra
   const std::int64_t m = velocity_range(ds, config.vmin, config.vmax).first;
   const auto rows =
       static_cast<std::uint64_t>(trajectory_offset(m, ds, ds) - trajectory_offset(m, 0, ds) + 1);
-  if (config.use == Use::localise && places < rows) {
+  if (places < rows) {
     faults.push_back(
         {"ds", fmt::format("the shortest line spans {} places, the map has {}", rows, places),
          "shorten ds"});

@@ -9,7 +9,7 @@ namespace seqloop::program {
 
 /// Adds a fault where a drive is so short that no frame could ever be answered.
 /// @param frames of the query drive
-/// @param places of the map; unused when loops are closed
+/// @param places that the map has, or has room for
 void check_length(Faults& faults, const MatcherConfig& config, std::uint64_t frames,
                   std::uint64_t places);
 

@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <utility>
 
 #include "files/descriptor_source.hpp"
-#include "files/npy_file.hpp"
 #include "opencv/builtin_describer.hpp"
 #include "opencv/source.hpp"
 #include "opencv/threads.hpp"
 #include "seqloop/config_file.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
@@ -24,11 +25,11 @@ void set_input_size(opencv::ModelSettings& model, std::string_view text) {
   if (cross == std::string_view::npos) {
     throw std::invalid_argument("'" + std::string(text) + "' is not WIDTHxHEIGHT");
   }
-  constexpr std::size_t most = 16384;
+  constexpr std::size_t most = 8192;
   const std::size_t width = parse_count(text.substr(0, cross));
   const std::size_t height = parse_count(text.substr(cross + 1));
   if (width == 0 || height == 0 || width > most || height > most) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not between 1x1 and 16384x16384");
+    throw std::invalid_argument("'" + std::string(text) + "' is not between 1x1 and 8192x8192");
   }
   model.input_width = static_cast<int>(width);
   model.input_height = static_cast<int>(height);
@@ -68,6 +69,26 @@ std::filesystem::path settings_beside(const std::filesystem::path& model) {
   return std::filesystem::exists(beside) ? beside : std::filesystem::path();
 }
 
+/// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
+void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
+  std::size_t changed = 0;
+  for (std::size_t row = 0; row < matrix.rows; ++row) {
+    const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
+    double squares = 0.0;
+    for (const float value : values) {
+      squares += static_cast<double>(value) * static_cast<double>(value);
+    }
+    // What describe wrote is unit to rounding and must stay as it is, bit by bit.
+    if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
+    normalise(values);
+    ++changed;
+  }
+  if (changed > 0) {
+    say("{}: {} of {} rows were not unit length and have been made so", name.string(), changed,
+        matrix.rows);
+  }
+}
+
 }  // namespace
 
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
@@ -84,7 +105,9 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.add({"fps", ValueKind::number, "frames a second of an image folder [10]",
                [&settings](std::string_view value) {
                  settings.fps = parse_number(value);
-                 if (settings.fps <= 0.0) throw std::invalid_argument("it must be above 0");
+                 if (!(settings.fps >= 1e-3 && settings.fps <= 1e6)) {
+                   throw std::invalid_argument("it must be between 0.001 and 1000000");
+                 }
                }});
 }
 
@@ -117,6 +140,12 @@ std::unique_ptr<Describer> open_describer(const DriveSettings& settings) {
   return std::make_unique<opencv::DnnDescriber>(model);
 }
 
+files::Matrix read_descriptors(const std::filesystem::path& path) {
+  files::Matrix descriptors = files::read_npy(path);
+  normalise_rows(descriptors, path);
+  return descriptors;
+}
+
 bool is_described(const std::filesystem::path& path) { return path.extension() == ".npy"; }
 
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const std::string& flag,
@@ -125,7 +154,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     throw SetupError({flag, "not given", "an image folder, a video or an .npy file"});
   }
   if (is_described(path)) {
-    return std::make_unique<files::DescriptorSource>(files::read_npy(path), settings.fps);
+    return std::make_unique<files::DescriptorSource>(read_descriptors(path), settings.fps);
   }
   return opencv::open_source(path, {gray, settings.fps});
 }

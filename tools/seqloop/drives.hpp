@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "files/npy_file.hpp"
 #include "opencv/dnn_describer.hpp"
 #include "seqloop/describer.hpp"
 #include "seqloop/frame_source.hpp"
@@ -31,6 +32,10 @@ void add_drive_options(OptionTable& options, DriveSettings& settings);
 [[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                                       const std::string& flag, bool gray,
                                                       const DriveSettings& settings);
+
+/// Reads an `.npy` file, and brings its rows to unit length, as Algorithm 1 wants them; says so
+/// where one was not. Throws SetupError.
+[[nodiscard]] files::Matrix read_descriptors(const std::filesystem::path& path);
 
 /// Whether a drive was described before, so that no describer is needed.
 [[nodiscard]] bool is_described(const std::filesystem::path& path);

@@ -51,6 +51,12 @@ void eval(const EvalSettings& settings, Faults faults) {
       truth = evaluation::Truth::from_csv(evaluation::CsvTable::read(settings.truth));
     });
   }
+  if (!identity && settings.frames > 0 && settings.frames < truth.frames()) {
+    faults.push_back(
+        {"frames",
+         fmt::format("{} is fewer than the truth file has, {}", settings.frames, truth.frames()),
+         "leave --frames out"});
+  }
   refuse(std::move(faults));
   if (identity) truth = evaluation::Truth::identity(identity_frames(settings, answers));
 

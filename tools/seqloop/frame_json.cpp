@@ -45,6 +45,7 @@ std::string frame_json(const ProcessedFrame& processed, bool deadline_missed) {
                         {"describe", milliseconds(times.describe)},
                         {"match", milliseconds(times.match)},
                         {"total", milliseconds(times.total)}};
+  json["late_ms"] = milliseconds(times.late);
   if (!processed.fault.empty()) json["fault"] = processed.fault;
   // A file name in a message may be no UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -1,20 +1,28 @@
 #include "seqloop/interruption.hpp"
 
-#include <csignal>
+#include <signal.h>
+
 #include <stdexcept>
 
 namespace seqloop::program {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;
+volatile sig_atomic_t asked = 0;
 
 void ask(int /*signal*/) { asked = 1; }
 
 }  // namespace
 
 void take_interruptions() noexcept {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, ask);
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler == SIG_IGN) continue;  // nohup and the shell's & want it so
+    struct sigaction action {};
+    action.sa_handler = ask;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(signal, &action, nullptr);
+  }
 }
 
 bool interrupted() noexcept { return asked != 0; }

@@ -2,8 +2,8 @@
 
 namespace seqloop::program {
 
-/// From now on, SIGINT, SIGTERM and SIGHUP ask the program to stop, and a pipe that nobody reads is
-/// a failed write and not a signal.
+/// From now on the first SIGINT, SIGTERM or SIGHUP asks the program to stop; a second one ends it.
+/// To be called by work that looks at `interrupted`. A signal that was ignored stays ignored.
 void take_interruptions() noexcept;
 
 /// Whether the program was asked to stop.

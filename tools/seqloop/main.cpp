@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <set>
 #include <utility>
@@ -13,7 +14,6 @@
 #include "opencv/silence.hpp"
 #include "seqloop/build_info.hpp"
 #include "seqloop/config_file.hpp"
-#include "seqloop/interruption.hpp"
 #include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
@@ -158,7 +158,7 @@ void keep_standard_streams() {
 int main(int argc, char** argv) {
   try {
     keep_standard_streams();
-    take_interruptions();
+    std::signal(SIGPIPE, SIG_IGN);  // nobody reads any more: a failed write, no sudden death
     opencv::silence_opencv();
     const int exit_code = run_program(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -16,6 +16,19 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
+namespace {
+
+/// @return the frame's descriptor; empty when it cannot be read or described
+std::span<const float> describe(const Frame& frame, Grab grab, Describer* describer,
+                                std::span<float> descriptor) {
+  if (grab == Grab::unreadable) return {};
+  if (!frame.descriptor.empty()) return frame.descriptor;
+  const bool failed = describer->describe(frame.image, descriptor) == Description::failed;
+  return failed ? std::span<const float>() : descriptor;
+}
+
+}  // namespace
+
 MapFiller::MapFiller(PlaceMap& map, bool blank_is_unreadable)
     : map_(&map), blank_is_unreadable_(blank_is_unreadable), last_(map.descriptor_size(), 0.0F) {}
 
@@ -36,20 +49,14 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
     stop_if_interrupted();
-    std::string_view fault = frame.fault;
-    if (grab == Grab::frame && !frame.descriptor.empty()) {
-      std::ranges::copy(frame.descriptor, descriptor.begin());
-    } else if (grab == Grab::frame &&
-               describer->describe(frame.image, descriptor) == Description::failed) {
-      fault = describer->last_fault();
-    }
-    if (fault.empty()) {
+    const std::span<const float> seen = describe(frame, grab, describer, descriptor);
+    if (!seen.empty()) {
       ++readable;
     } else {
-      progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
+      progress.tell(fmt::format("reference frame {}: {}", frame.index,
+                                grab == Grab::frame ? describer->last_fault() : frame.fault));
     }
-    if (!filler.add(fault.empty() ? std::span<const float>(descriptor)
-                                  : std::span<const float>())) {
+    if (!filler.add(seen)) {
       throw SetupError({"max-places",
                         fmt::format("the reference has more frames than the map has room for, {}",
                                     map.capacity()),

@@ -9,8 +9,8 @@
 #include "files/npy_file.hpp"
 #include "files/output_file.hpp"
 #include "seqloop/detector.hpp"
-#include "seqloop/difference.hpp"
 #include "seqloop/drive_length.hpp"
+#include "seqloop/drives.hpp"
 #include "seqloop/interruption.hpp"
 #include "seqloop/map_builder.hpp"
 #include "seqloop/matcher_settings.hpp"
@@ -28,26 +28,6 @@ struct MatchSettings {
   std::filesystem::path out;
   MatcherSettings matcher;
 };
-
-/// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
-void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
-  std::size_t changed = 0;
-  for (std::size_t row = 0; row < matrix.rows; ++row) {
-    const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
-    double squares = 0.0;
-    for (const float value : values) {
-      squares += static_cast<double>(value) * static_cast<double>(value);
-    }
-    // What describe wrote is unit to rounding and must stay as it is, bit by bit.
-    if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
-    normalise(values);
-    ++changed;
-  }
-  if (changed > 0) {
-    say("{}: {} of {} rows were not unit length and have been made so", name.string(), changed,
-        matrix.rows);
-  }
-}
 
 PlaceMap make_map(const files::Matrix& reference, const MatcherConfig& config) {
   PlaceMap map({reference.rows, reference.columns});
@@ -78,9 +58,9 @@ void match(const MatchSettings& settings, Faults faults) {
   if (settings.query.empty()) {
     faults.push_back({"query", "not given", "--query Q.npy"});
   } else {
-    collect(faults, [&] { query = files::read_npy(settings.query); });
+    collect(faults, [&] { query = read_descriptors(settings.query); });
   }
-  if (!closing) collect(faults, [&] { reference = files::read_npy(settings.reference); });
+  if (!closing) collect(faults, [&] { reference = read_descriptors(settings.reference); });
   std::unique_ptr<files::OutputFile> out;
   refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
   if (settings.out.empty()) {
@@ -99,12 +79,11 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   refuse(std::move(faults));
 
-  normalise_rows(*query, settings.query);
-  if (reference) normalise_rows(*reference, settings.reference);
   PlaceMap map = closing ? PlaceMap({query->rows, query->columns}) : make_map(*reference, config);
   reference.reset();
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
+  take_interruptions();
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
   for (std::size_t row = 0; row < query->rows; ++row) {

@@ -10,9 +10,10 @@ void refuse_overwriting(Faults& faults, const std::filesystem::path& out,
                         const std::vector<std::filesystem::path>& inputs) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(out, error)) return;
+  const std::filesystem::path folder = std::filesystem::absolute(out, error).parent_path();
   const auto holds_out = [&](const std::filesystem::path& input) {
     return !input.empty() && (std::filesystem::equivalent(input, out, error) ||
-                              std::filesystem::equivalent(input, out.parent_path(), error));
+                              std::filesystem::equivalent(input, folder, error));
   };
   if (std::ranges::any_of(inputs, holds_out)) {
     faults.push_back(

@@ -150,6 +150,11 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
   const auto seen = fetch(*query(), frames);
   const auto known = fetch(*reference(), places);
 
+  // All pairs get the room of the tallest picture, so that a drive of mixed sizes fits the sheet.
+  int height = 0;
+  for (const auto& pictures : {seen, known}) {
+    for (const auto& [frame, picture] : pictures) height = std::max(height, picture.rows);
+  }
   std::vector<cv::Mat> pairs;
   for (const Decision& decision : chosen) {
     const auto left = seen.find(decision.frame);
@@ -157,7 +162,6 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
     if (left == seen.end() || right == known.end()) continue;
     constexpr int caption = 24;
     constexpr int gap = 6;
-    const int height = std::max(left->second.rows, right->second.rows);
     cv::Mat pair(height + caption + gap, left->second.cols + right->second.cols + 3 * gap, CV_8UC3,
                  cv::Scalar::all(255));
     left->second.copyTo(pair(cv::Rect({gap, caption}, left->second.size())));
@@ -175,10 +179,9 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
   cv::Mat sheet;
   for (std::size_t i = 0; i < pairs.size(); i += 2) {
     cv::Mat right(pairs[i].size(), CV_8UC3, cv::Scalar::all(255));
-    if (i + 1 < pairs.size() && pairs[i + 1].size() == pairs[i].size()) right = pairs[i + 1];
+    if (i + 1 < pairs.size()) right = pairs[i + 1];
     cv::Mat row;
     cv::hconcat(pairs[i], right, row);
-    if (!sheet.empty() && sheet.cols != row.cols) continue;
     sheet.push_back(row);
   }
   write_png(folder / "matches.png", sheet);

@@ -77,8 +77,8 @@ Setup set_up(const RunSettings& settings, Faults faults) {
   if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
   const bool closing = settings.reference.empty();
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
-  if (!(settings.budget_ms > 0.0)) {
-    faults.push_back({"budget-total", "it must be above 0 milliseconds"});
+  if (!(settings.budget_ms > 0.0 && settings.budget_ms <= 1e9)) {
+    faults.push_back({"budget-total", "it must be above 0 and at most 1e9 milliseconds"});
   }
   const bool pictures = !is_described(settings.source);
   if (pictures || !(closing || is_described(settings.reference))) {
@@ -141,6 +141,7 @@ void run(const RunSettings& settings, Faults faults) {
       std::chrono::duration<double, std::milli>(settings.budget_ms)));
   PictureRecorder recorder;
 
+  take_interruptions();
   Progress progress("running", setup.source->frame_count());
   while (!interrupted()) {
     const std::optional<ProcessedFrame> processed = pipeline.process();
@@ -156,7 +157,7 @@ void run(const RunSettings& settings, Faults faults) {
   }
   progress.done();
   tell_notes(settings.source, *setup.source);
-  if (summary.frames() == summary.errors()) {
+  if (summary.frames() > 0 && summary.frames() == summary.errors()) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
   out.commit();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 namespace seqloop::program {
@@ -25,6 +26,7 @@ bool RunSummary::add(const ProcessedFrame& processed) {
   describe_.add(times.describe);
   match_.add(times.match);
   total_.add(times.total);
+  latest_ = std::max(latest_, times.late);
   ++at_gate_[static_cast<std::size_t>(processed.report.gate)];
   if (processed.report.map_full) ++map_full_;
   const bool missed = times.total > budget_;
@@ -47,6 +49,9 @@ std::string RunSummary::text() const {
           stage_line("match", match_) + stage_line("total", total_);
   text += fmt::format("  {} frames missed the budget of {:g} ms, 0 dropped\n", misses_,
                       milliseconds(budget_));
+  if (latest_ > Nanoseconds(0)) {
+    text += fmt::format("  grabbed up to {:.1f} ms after their time\n", milliseconds(latest_));
+  }
   if (map_full_ > 0) {
     text += fmt::format("  the map was full: {} frames became no places; raise --max-places\n",
                         map_full_);

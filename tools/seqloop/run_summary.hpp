@@ -30,6 +30,7 @@ class RunSummary {
   std::array<std::uint64_t, gates> at_gate_{};
   std::uint64_t misses_ = 0;
   std::uint64_t map_full_ = 0;
+  Nanoseconds latest_{0};
   LatencyHistogram grab_;
   LatencyHistogram describe_;
   LatencyHistogram match_;

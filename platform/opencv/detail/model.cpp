@@ -1,4 +1,5 @@
 #include "opencv/detail/model.hpp"
+#include "opencv/detail/one_line.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "opencv/detail/one_line.hpp"
 #include "opencv/detail/onnx_outline.hpp"
 #include "seqloop/fault.hpp"
 
@@ -23,9 +25,9 @@ std::string own_name(std::string_view name) {
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason) {
-  throw SetupError(
-      Fault{name, "OpenCV cannot read it as a model (" + reason + ")",
-            "use a file that OpenCV's dnn module reads: ONNX, Caffe, TensorFlow, ..."});
+  throw SetupError(Fault{name, "OpenCV cannot read it as a model (" + reason + ")",
+                         "use a file that OpenCV's dnn module reads: ONNX, Caffe (with its "
+                         "prototxt as the second file), TensorFlow, ..."});
 }
 
 void check_exists(const std::filesystem::path& path, const std::string& role, Faults& faults) {
@@ -79,7 +81,7 @@ Model load_onnx(std::span<const unsigned char> file, const std::string& name) {
     model.net = cv::dnn::readNetFromONNX(
         static_cast<const char*>(static_cast<const void*>(file.data())), file.size());
   } catch (const cv::Exception& error) {
-    refuse(name, error.err);
+    refuse(name, one_line(error.err));
   }
   if (model.net.empty()) refuse(name, "it has no layers");
   OnnxOutline outline = outline_onnx(file);
@@ -111,7 +113,7 @@ Model load_model(const std::filesystem::path& path, const std::filesystem::path&
   try {
     model.net = cv::dnn::readNet(path.string(), config.string());
   } catch (const cv::Exception& error) {
-    refuse(path.string(), error.err);
+    refuse(path.string(), one_line(error.err));
   }
   if (model.net.empty()) refuse(path.string(), "it has no layers");
   read_declared_input(model);
