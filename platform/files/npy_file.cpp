@@ -96,7 +96,7 @@ Matrix read_npy(const std::filesystem::path& path) {
 
 NpyWriter::NpyWriter(const std::filesystem::path& path, std::size_t columns)
     : file_(path), columns_(columns) {
-  if (file_.direct()) {
+  if (!file_.rewindable()) {
     throw SetupError(Fault{path.string(),
                            "a .npy file cannot be streamed: its length stands at its start",
                            "give the name of a file"});

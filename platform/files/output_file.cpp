@@ -108,6 +108,11 @@ void OutputFile::open_beside() {
                          "choose a folder that may be written"});
 }
 
+bool OutputFile::rewindable() const noexcept {
+  const int flags = ::fcntl(descriptor_, F_GETFL);
+  return ::lseek(descriptor_, 0, SEEK_CUR) == 0 && flags >= 0 && (flags & O_APPEND) == 0;
+}
+
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);

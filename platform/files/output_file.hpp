@@ -51,8 +51,9 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Whether this is a device, a pipe or the standard output, which is written as it is.
-  [[nodiscard]] bool direct() const noexcept { return partial_.empty(); }
+  /// Whether `overwrite_start` works and means this file's own start: not in a pipe, and not in a
+  /// standard output that appends or has been written before. To be asked before the first write.
+  [[nodiscard]] bool rewindable() const noexcept;
 
  private:
   void open_beside();

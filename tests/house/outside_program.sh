@@ -14,10 +14,28 @@ block cmake >"$work/user/CMakeLists.txt"
 block cpp >"$work/user/main.cpp"
 [ -s "$work/user/main.cpp" ] && [ -s "$work/user/CMakeLists.txt" ]
 
-cmake -S "$work/user" -B "$work/user/build" -DCMAKE_BUILD_TYPE=Release \
+cmake -G Ninja -S "$work/user" -B "$work/user/build" -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$work/installed" \
   >"$work/log" || { cat "$work/log"; exit 1; }
 cmake --build "$work/user/build" >"$work/log" || { cat "$work/log"; exit 1; }
+
+# Who brings descriptors of their own needs the core alone, and no OpenCV.
+mkdir "$work/core"
+sed 's/find_package(seqloop REQUIRED)/find_package(seqloop REQUIRED COMPONENTS core)/
+     s/ seqloop::opencv//' "$work/user/CMakeLists.txt" >"$work/core/CMakeLists.txt"
+cat >"$work/core/main.cpp" <<'EOF'
+#include <seqloop/detector.hpp>
+int main() {
+  seqloop::PlaceMap map({.places = 10, .descriptor_size = 2});
+  seqloop::Detector detector({.use = seqloop::Use::close_loops}, map);
+  return detector.step(std::vector<float>{1.0F, 0.0F}).gate == seqloop::Gate::warming_up ? 0 : 1;
+}
+EOF
+cmake -G Ninja -S "$work/core" -B "$work/core/build" -DCMAKE_CXX_COMPILER="$cxx" \
+  -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$work/installed" \
+  -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON >"$work/log" || { cat "$work/log"; exit 1; }
+cmake --build "$work/core/build" >"$work/log" || { cat "$work/log"; exit 1; }
+"$work/core/build/loops"
 
 "$maker" --out "$work/drive" --frames 400 --drives loop --size 160x90 2>/dev/null
 "$work/user/build/loops" "$work/drive/drive" >"$work/loops.txt"

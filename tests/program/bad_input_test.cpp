@@ -212,7 +212,7 @@ TEST_F(BadInput, OutputPathsAreCheckedWithEverythingElse) {
   expect_refused("run --source good.npy --ds 0 --out none/x --pictures /dev/null/p --fps 0",
                  {"ds: 0", "none/x", "/dev/null", "fps"});
   expect_refused("describe --source none --out none/d.npy", {"none: ", "none/d.npy"});
-  expect_refused("describe --source none --out -", {"none: ", "streamed"});
+  expect_refused("describe --source none --out - >>app.npy", {"none: ", "streamed"});
 }
 
 TEST_F(BadInput, StandardStreamsThatAreFullOrClosed) {
