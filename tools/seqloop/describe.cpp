@@ -22,6 +22,7 @@ struct DescribeSettings {
 };
 
 void describe(const DescribeSettings& settings, Faults faults) {
+  take_interruptions();
   std::unique_ptr<Describer> describer;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<files::NpyWriter> out;
@@ -44,7 +45,6 @@ void describe(const DescribeSettings& settings, Faults faults) {
   std::size_t unreadable = 0;
   std::size_t blank = 0;
   std::vector<float> descriptor(describer->size());
-  take_interruptions();
   Progress progress("describing", source->frame_count());
   Frame frame;
   for (Grab grab = source->grab(frame); grab != Grab::end; grab = source->grab(frame)) {

@@ -50,6 +50,7 @@ std::string csv_row(const FrameReport& report) {
 }
 
 void match(const MatchSettings& settings, Faults faults) {
+  take_interruptions();
   const bool closing = settings.reference.empty();
   const MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
@@ -83,7 +84,6 @@ void match(const MatchSettings& settings, Faults faults) {
   reference.reset();
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
-  take_interruptions();
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
   for (std::size_t row = 0; row < query->rows; ++row) {

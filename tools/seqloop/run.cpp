@@ -125,6 +125,7 @@ void write_pictures(const RunSettings& settings, const PictureRecorder& recorder
 }
 
 void run(const RunSettings& settings, Faults faults) {
+  take_interruptions();
   const Setup setup = set_up(settings, std::move(faults));
   files::OutputFile& out = *setup.out;
   if (!settings.pictures.empty()) make_folder(settings.pictures);
@@ -141,7 +142,6 @@ void run(const RunSettings& settings, Faults faults) {
       std::chrono::duration<double, std::milli>(settings.budget_ms)));
   PictureRecorder recorder;
 
-  take_interruptions();
   Progress progress("running", setup.source->frame_count());
   while (!interrupted()) {
     const std::optional<ProcessedFrame> processed = pipeline.process();
