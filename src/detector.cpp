@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "seqloop/difference.hpp"
+
 namespace seqloop {
 namespace {
 
@@ -42,10 +44,7 @@ std::size_t history(const MatcherConfig& config) {
 /// is not would spoil the running statistics for the rest of the drive.
 bool well_formed(std::span<const float> values, bool zero_allowed) {
   constexpr double tolerance = 0.01;
-  double squares = 0.0;
-  for (const float value : values) {
-    squares += static_cast<double>(value) * static_cast<double>(value);
-  }
+  const double squares = squared_norm(values);
   return std::abs(squares - 1.0) <= tolerance || (zero_allowed && squares == 0.0);
 }
 

@@ -27,11 +27,16 @@ float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
   return static_cast<float>(std::sqrt(sum));
 }
 
-bool normalise(std::span<float> vector) noexcept {
+double squared_norm(std::span<const float> vector) noexcept {
   double squares = 0.0;
   for (const float value : vector) {
     squares += static_cast<double>(value) * static_cast<double>(value);
   }
+  return squares;
+}
+
+bool normalise(std::span<float> vector) noexcept {
+  const double squares = squared_norm(vector);
   if (squares <= 0.0) return false;
   const double norm = std::sqrt(squares);
   for (float& value : vector) value = static_cast<float>(static_cast<double>(value) / norm);

@@ -29,11 +29,12 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
     grabbed = clock_->now();
   }
 
-  const std::span<const float> descriptor = describe(processed.frame, grab, processed.fault);
+  const DescribedFrame seen = describe(grab, processed.frame, describer_, descriptor_);
   const Nanoseconds described = clock_->now();
-  processed.report = detector_->step(descriptor);
+  processed.report = detector_->step(seen.descriptor);
   const Nanoseconds matched = clock_->now();
 
+  processed.fault = seen.fault;
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
     processed.fault = "its descriptor is all zero, not of unit length, or of the wrong size";
   }
@@ -43,23 +44,15 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   return processed;
 }
 
-/// @return the frame's descriptor, empty when there is none: then `fault` says why
-std::span<const float> Pipeline::describe(const Frame& frame, Grab grab,
-                                          std::string_view& fault) noexcept {
-  if (grab == Grab::unreadable) {
-    fault = frame.fault;
-    return {};
+DescribedFrame describe(Grab grab, const Frame& frame, Describer* describer,
+                        std::span<float> buffer) noexcept {
+  if (grab == Grab::unreadable) return {{}, frame.fault};
+  if (!frame.descriptor.empty()) return {frame.descriptor, {}};
+  if (describer == nullptr) return {{}, "nothing is there to describe pictures with"};
+  if (describer->describe(frame.image, buffer) == Description::failed) {
+    return {{}, describer->last_fault()};
   }
-  if (!frame.descriptor.empty()) return frame.descriptor;
-  if (describer_ == nullptr) {
-    fault = "nothing is there to describe pictures with";
-    return {};
-  }
-  if (describer_->describe(frame.image, descriptor_) == Description::failed) {
-    fault = describer_->last_fault();
-    return {};
-  }
-  return descriptor_;
+  return {buffer, {}};
 }
 
 }  // namespace seqloop

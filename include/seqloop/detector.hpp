@@ -48,11 +48,10 @@ class Detector {
   ~Detector() = default;
 
   /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
-  /// @param descriptor [D] unit L2. Empty, of another size, not of unit length (NaN and infinity
-  /// are
-  ///   not), or all zero where `blank_is_unreadable`: the frame could not be read. It counts, the
-  ///   scene is taken to stand still, and the gate is `frame_error`: the answer that was due, for
-  ///   the centre frame, is not given.
+  /// @param descriptor [D] unit L2. Empty, of another size, not of unit length (NaN or infinity
+  ///   inside), or all zero where `blank_is_unreadable`: the frame could not be read. It counts,
+  ///   the scene is taken to stand still, and the gate is `frame_error`: the answer that was due,
+  ///   for the centre frame, is not given.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 

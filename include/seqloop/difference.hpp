@@ -22,6 +22,9 @@ inline constexpr std::size_t lanes = 16;
 /// Work: S subtractions and MACs. Allocates: never. Paper: Algorithm 2.
 [[nodiscard]] float euclidean(std::span<const float> a, std::span<const float> b) noexcept;
 
+/// Sum of the squares. NaN or infinite when a value is; zero only when all are.
+[[nodiscard]] double squared_norm(std::span<const float> vector) noexcept;
+
 /// Divides by the L2 norm. A zero vector stays zero.
 /// @return whether the vector was longer than zero. Paper: Algorithm 1.
 bool normalise(std::span<float> vector) noexcept;

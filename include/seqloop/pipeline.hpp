@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,19 @@ struct ProcessedFrame {
   StageTimes times;
 };
 
+/// A frame's descriptor, or why there is none.
+struct DescribedFrame {
+  std::span<const float> descriptor;  ///< [D]; empty when the frame cannot be read or described
+  std::string_view fault;
+};
+
+/// @param grab, frame what a source handed over, `end` excepted
+/// @param describer   may be null when the source hands over descriptors
+/// @param buffer [D] that a picture's descriptor is written to
+/// Allocates: what the describer does.
+[[nodiscard]] DescribedFrame describe(Grab grab, const Frame& frame, Describer* describer,
+                                      std::span<float> buffer) noexcept;
+
 /// How a recording is played.
 enum class Pace : std::uint8_t {
   max,  ///< a frame as soon as the one before is done
@@ -49,9 +63,6 @@ class Pipeline {
   [[nodiscard]] std::optional<ProcessedFrame> process() noexcept;
 
  private:
-  [[nodiscard]] std::span<const float> describe(const Frame& frame, Grab grab,
-                                                std::string_view& fault) noexcept;
-
   FrameSource* source_;
   Describer* describer_;
   Detector* detector_;

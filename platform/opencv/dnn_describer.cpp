@@ -10,6 +10,7 @@
 #include "opencv/detail/picture_blob.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::opencv {
@@ -141,19 +142,10 @@ class DnnDescriber::Impl {
     const cv::Mat output = forward(image);
     if (output.total() != size_) return fail("the layer's output changed its size");
     const std::span<const float> features(output.ptr<float>(), size_);
-    double squares = 0.0;
-    for (const float value : features)
-      squares += static_cast<double>(value) * static_cast<double>(value);
-    if (!std::isfinite(squares)) return fail("the layer gives NaN or infinity for this picture");
-    if (squares == 0.0) {
-      std::fill(descriptor.begin(), descriptor.end(), 0.0F);
-      return Description::blank;
-    }
-    const double norm = std::sqrt(squares);  // Eq. (1)
-    std::transform(features.begin(), features.end(), descriptor.begin(), [norm](float value) {
-      return static_cast<float>(static_cast<double>(value) / norm);
-    });
-    return Description::good;
+    if (!std::isfinite(squared_norm(features)))
+      return fail("the layer gives NaN or infinity for this picture");
+    std::copy(features.begin(), features.end(), descriptor.begin());
+    return normalise(descriptor) ? Description::good : Description::blank;  // Eq. (1)
   }
 
   Description fail(std::string reason) {

@@ -62,8 +62,8 @@ Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t 
     ++measures.answered;
     measures.correct += truth.right(answer.query, answer.match, tolerance) ? 1U : 0U;
     if (i + 1 < answers.size() && !more_certain(answer, answers[i + 1])) continue;
-    measures.curve.push_back({ratio(measures.correct, frames),
-                              ratio(measures.correct, measures.answered), answer.uncertainty});
+    measures.curve.push_back(
+        {ratio(measures.correct, frames), ratio(measures.correct, measures.answered)});
     if (measures.correct == measures.answered) {
       measures.recall_at_100_precision = measures.curve.back().recall;
     }

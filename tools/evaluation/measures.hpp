@@ -24,7 +24,6 @@ enum class ThresholdOn : std::uint8_t { uniqueness, score };
 struct CurvePoint {
   double recall;
   double precision;
-  double threshold;  ///< answers up to this one are let in; NaN: all
 };
 
 struct Measures {

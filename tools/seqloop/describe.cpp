@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "files/npy_file.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/drives.hpp"
 #include "seqloop/interruption.hpp"
 #include "seqloop/outputs.hpp"
+#include "seqloop/pipeline.hpp"
 #include "seqloop/progress.hpp"
 #include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
@@ -31,7 +33,7 @@ void describe(const DescribeSettings& settings, Faults faults) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
   } else {
-    collect(faults, [&] { source = open_drive(settings.source, "source", false, settings.drive); });
+    collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
   }
   refuse_overwriting(faults, settings.out, {settings.source});
   if (settings.out.empty()) {
@@ -49,19 +51,15 @@ void describe(const DescribeSettings& settings, Faults faults) {
   Frame frame;
   for (Grab grab = source->grab(frame); grab != Grab::end; grab = source->grab(frame)) {
     stop_if_interrupted();
-    std::string_view fault = frame.fault;
-    Description description = Description::failed;
-    if (grab == Grab::frame) {
-      description = describer->describe(frame.image, descriptor);
-      if (description == Description::failed) fault = describer->last_fault();
-    }
-    if (description == Description::failed) {
+    const auto [described, fault] = seqloop::describe(grab, frame, describer.get(), descriptor);
+    if (described.empty()) {
       // A row of zeros keeps the rows in step with the frames.
       std::ranges::fill(descriptor, 0.0F);
       ++unreadable;
       progress.tell(fmt::format("frame {}: {}", frame.index, fault));
+    } else if (squared_norm(described) == 0.0) {
+      ++blank;
     }
-    if (description == Description::blank) ++blank;
     out->append(descriptor);
     progress.step();
   }

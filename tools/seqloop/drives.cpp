@@ -74,10 +74,7 @@ void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
   std::size_t changed = 0;
   for (std::size_t row = 0; row < matrix.rows; ++row) {
     const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
-    double squares = 0.0;
-    for (const float value : values) {
-      squares += static_cast<double>(value) * static_cast<double>(value);
-    }
+    const double squares = squared_norm(values);
     // What describe wrote is unit to rounding and must stay as it is, bit by bit.
     if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
     normalise(values);
@@ -149,14 +146,14 @@ files::Matrix read_descriptors(const std::filesystem::path& path) {
 bool is_described(const std::filesystem::path& path) { return path.extension() == ".npy"; }
 
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const std::string& flag,
-                                        bool gray, const DriveSettings& settings) {
+                                        const DriveSettings& settings) {
   if (path.empty()) {
     throw SetupError({flag, "not given", "an image folder, a video or an .npy file"});
   }
   if (is_described(path)) {
     return std::make_unique<files::DescriptorSource>(read_descriptors(path), settings.fps);
   }
-  return opencv::open_source(path, {gray, settings.fps});
+  return opencv::open_source(path, {.frames_per_second = settings.fps});
 }
 
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {

@@ -30,7 +30,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings);
 /// Opens an image folder, a video or an `.npy` file. Throws SetupError.
 /// @param flag the flag that names the drive, for the message when it was not given
 [[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
-                                                      const std::string& flag, bool gray,
+                                                      const std::string& flag,
                                                       const DriveSettings& settings);
 
 /// Reads an `.npy` file, and brings its rows to unit length, as Algorithm 1 wants them; says so

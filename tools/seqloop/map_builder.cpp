@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "files/descriptor_source.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/interruption.hpp"
+#include "seqloop/pipeline.hpp"
 #include "seqloop/progress.hpp"
 
 namespace seqloop::program {
@@ -16,47 +18,24 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
-namespace {
-
-/// @return the frame's descriptor; empty when it cannot be read or described
-std::span<const float> describe(const Frame& frame, Grab grab, Describer* describer,
-                                std::span<float> descriptor) {
-  if (grab == Grab::unreadable) return {};
-  if (!frame.descriptor.empty()) return frame.descriptor;
-  const bool failed = describer->describe(frame.image, descriptor) == Description::failed;
-  return failed ? std::span<const float>() : descriptor;
-}
-
-}  // namespace
-
-MapFiller::MapFiller(PlaceMap& map, bool blank_is_unreadable)
-    : map_(&map), blank_is_unreadable_(blank_is_unreadable), last_(map.descriptor_size(), 0.0F) {}
-
-bool MapFiller::add(std::span<const float> descriptor) {
-  const bool blank = std::ranges::all_of(descriptor, [](float value) { return value == 0.0F; });
-  if (!descriptor.empty() && !(blank && blank_is_unreadable_)) {
-    std::ranges::copy(descriptor, last_.begin());
-  }
-  return map_->add(last_);
-}
-
 void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
               const MatcherConfig& config) {
-  MapFiller filler(map, config.blank_is_unreadable);
-  std::vector<float> descriptor(map.descriptor_size());
+  std::vector<float> buffer(map.descriptor_size());
+  std::vector<float> last(map.descriptor_size(), 0.0F);
   Progress progress("mapping", drive.frame_count());
   std::size_t readable = 0;
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
     stop_if_interrupted();
-    const std::span<const float> seen = describe(frame, grab, describer, descriptor);
-    if (!seen.empty()) {
-      ++readable;
+    const auto [descriptor, fault] = describe(grab, frame, describer, buffer);
+    if (descriptor.empty()) {
+      progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     } else {
-      progress.tell(fmt::format("reference frame {}: {}", frame.index,
-                                grab == Grab::frame ? describer->last_fault() : frame.fault));
+      ++readable;
+      const bool blank = squared_norm(descriptor) == 0.0;
+      if (!(blank && config.blank_is_unreadable)) std::ranges::copy(descriptor, last.begin());
     }
-    if (!filler.add(seen)) {
+    if (!map.add(last)) {
       throw SetupError({"max-places",
                         fmt::format("the reference has more frames than the map has room for, {}",
                                     map.capacity()),

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "files/descriptor_source.hpp"
 #include "files/npy_file.hpp"
 #include "files/output_file.hpp"
 #include "seqloop/detector.hpp"
@@ -28,16 +28,6 @@ struct MatchSettings {
   std::filesystem::path out;
   MatcherSettings matcher;
 };
-
-PlaceMap make_map(const files::Matrix& reference, const MatcherConfig& config) {
-  PlaceMap map({reference.rows, reference.columns});
-  MapFiller filler(map, config.blank_is_unreadable);
-  for (std::size_t row = 0; row < reference.rows; ++row) {
-    if (!filler.add(reference.row(row))) break;
-  }
-  if (config.standardisation.on) map.standardise();
-  return map;
-}
 
 /// A row of the match list. NaN carries no sign here.
 std::string csv_row(const FrameReport& report) {
@@ -80,8 +70,12 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   refuse(std::move(faults));
 
-  PlaceMap map = closing ? PlaceMap({query->rows, query->columns}) : make_map(*reference, config);
-  reference.reset();
+  PlaceMap map({reference ? reference->rows : query->rows, query->columns});
+  if (reference) {
+    files::DescriptorSource drive(std::move(*reference));
+    reference.reset();
+    fill_map(map, drive, nullptr, config);
+  }
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
   Progress progress("matching", query->rows);

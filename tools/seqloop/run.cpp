@@ -84,12 +84,10 @@ Setup set_up(const RunSettings& settings, Faults faults) {
   if (pictures || !(closing || is_described(settings.reference))) {
     collect(faults, [&] { setup.describer = open_describer(settings.drive); });
   }
-  collect(faults,
-          [&] { setup.source = open_drive(settings.source, "source", false, settings.drive); });
+  collect(faults, [&] { setup.source = open_drive(settings.source, "source", settings.drive); });
   if (!closing) {
-    collect(faults, [&] {
-      setup.reference = open_drive(settings.reference, "reference", false, settings.drive);
-    });
+    collect(faults,
+            [&] { setup.reference = open_drive(settings.reference, "reference", settings.drive); });
   }
   refuse(faults);
 
@@ -114,7 +112,7 @@ Setup set_up(const RunSettings& settings, Faults faults) {
 void write_pictures(const RunSettings& settings, const PictureRecorder& recorder,
                     const PlaceMap& map) {
   const auto reopen = [&](const std::filesystem::path& path) {
-    return [&settings, path] { return open_drive(path, "source", false, settings.drive); };
+    return [&settings, path] { return open_drive(path, "source", settings.drive); };
   };
   recorder.write_matrix(settings.pictures, map);
   const bool pairs = recorder.write_pairs(
