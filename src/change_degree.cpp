@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "seqloop/difference.hpp"
-
 namespace seqloop {
 
 double ChangeDegree::advance(const DifferenceSlices& slices, std::uint64_t frame) noexcept {
@@ -11,7 +9,7 @@ double ChangeDegree::advance(const DifferenceSlices& slices, std::uint64_t frame
   if (frame < reach) return 1.0;
   double sum = 0.0;
   for (std::uint64_t earlier = frame - reach; earlier < frame; ++earlier) {
-    sum += static_cast<double>(euclidean(slices.query(frame), slices.query(earlier)));
+    sum += static_cast<double>(slices.between(frame, earlier));
     ++distances_;
   }
   // The denominator of Eq. (4) is the numerator of the frame before.

@@ -40,12 +40,15 @@ std::size_t history(const MatcherConfig& config) {
   return std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
 }
 
-/// Whether a descriptor is what Algorithm 1 gives: finite, and of unit length or all zero. One that
-/// is not would spoil the running statistics for the rest of the drive.
-bool well_formed(std::span<const float> values, bool zero_allowed) {
-  constexpr double tolerance = 0.01;
+/// Whether a descriptor is what its difference wants: finite, and for Euclid of unit length
+/// (Algorithm 1) or all zero. One that is not would spoil the running statistics for the rest of
+/// the drive.
+bool well_formed(std::span<const float> values, const MatcherConfig& config) {
+  if (blank(config.difference, values)) return !config.blank_is_unreadable;
   const double squares = squared_norm(values);
-  return std::abs(squares - 1.0) <= tolerance || (zero_allowed && squares == 0.0);
+  if (config.difference == Difference::mean_absolute) return std::isfinite(squares);
+  constexpr double tolerance = 0.01;
+  return std::abs(squares - 1.0) <= tolerance;
 }
 
 }  // namespace
@@ -70,7 +73,7 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   if (config.candidates != Candidates::all) {
     distances *= window;
   } else if (config.use == Use::close_loops) {
-    distances += config.sequence_length;
+    distances += config.sequence_length * (config.enhance ? config.rwindow / 2 + 1 : 1);
   }
   if (config.candidates == Candidates::adaptive) distances += ChangeDegree::reach;
   return {capacity.places, distances, capacity.places * lines};
@@ -92,7 +95,7 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       map_(map),
       trajectories_(arena, config.sequence_length, config.vmin, config.vmax),
       statistics_(arena, capacity.descriptor_size),
-      slices_(arena, config.sequence_length + 1, history(config), capacity),
+      slices_(arena, config, history(config), capacity),
       search_(arena, trajectories_, capacity.places),
       ranges_(arena, config),
       decision_(config.rwindow) {}
@@ -138,8 +141,7 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 bool Detector::take_query(std::span<const float> descriptor) noexcept {
   const std::uint64_t frame = slices_.frames();
   const std::span<float> query = slices_.push();
-  if (descriptor.size() != map_->descriptor_size() ||
-      !well_formed(descriptor, !config_.blank_is_unreadable)) {
+  if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
     if (frame == 0) {
       std::ranges::fill(query, 0.0F);
     } else {

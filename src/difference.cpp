@@ -10,9 +10,9 @@ namespace {
 using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
 using LanesView = Eigen::Map<const Lanes>;
 
-}  // namespace
-
-float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
+/// Sums `term(a, b)` over all values, in a fixed order.
+template <class Term>
+double sum_of(std::span<const float> a, std::span<const float> b, Term term) noexcept {
   // Partial sums move to double before float has lost digits on long descriptors.
   constexpr std::size_t block = 64 * lanes;
   double sum = 0.0;
@@ -20,11 +20,34 @@ float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
     const std::size_t last = std::min(first + block, a.size());
     Lanes partial = Lanes::Zero();
     for (std::size_t i = first; i < last; i += lanes) {
-      partial += (LanesView(a.data() + i) - LanesView(b.data() + i)).square();
+      partial += term(LanesView(a.data() + i) - LanesView(b.data() + i));
     }
     for (const float lane : partial) sum += static_cast<double>(lane);
   }
-  return static_cast<float>(std::sqrt(sum));
+  return sum;
+}
+
+}  // namespace
+
+float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
+  const auto square = [](const auto& values) { return values.square(); };
+  return static_cast<float>(std::sqrt(sum_of(a, b, square)));
+}
+
+float mean_absolute(std::span<const float> a, std::span<const float> b, std::size_t size) noexcept {
+  const auto absolute = [](const auto& values) { return values.abs(); };
+  return static_cast<float>(sum_of(a, b, absolute) / static_cast<double>(size));
+}
+
+float difference(Difference kind, std::span<const float> a, std::span<const float> b,
+                 std::size_t size) noexcept {
+  return kind == Difference::euclidean ? euclidean(a, b) : mean_absolute(a, b, size);
+}
+
+bool blank(Difference kind, std::span<const float> descriptor) noexcept {
+  const float flat =
+      kind == Difference::euclidean || descriptor.empty() ? 0.0F : descriptor.front();
+  return std::ranges::all_of(descriptor, [flat](float value) { return value == flat; });
 }
 
 double squared_norm(std::span<const float> vector) noexcept {

@@ -5,43 +5,46 @@
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
-namespace {
 
-constexpr float not_computed = -1.0F;
-
-}  // namespace
-
-DifferenceSlices::DifferenceSlices(Arena& arena, std::size_t columns, std::size_t history,
+DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
                                    const Capacity& capacity)
-    : columns_(columns),
+    : kind_(config.difference),
+      enhance_(config.enhance),
+      contrast_(config.rwindow),
       history_(history),
-      places_(capacity.places),
       stride_(padded_size(capacity.descriptor_size)),
+      descriptor_size_(capacity.descriptor_size),
       queries_(arena.take<float>("query descriptors", history * stride_)),
-      differences_(arena.take<float>("difference slices", columns * places_)),
-      filled_to_(arena.take<std::size_t>("filled parts of the slices", columns)) {}
+      differences_(arena, "difference slices", "filled parts of the slices",
+                   config.sequence_length + 1, capacity.places),
+      enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
+                enhance_ ? config.sequence_length + 1 : 0, capacity.places) {}
 
 std::span<float> DifferenceSlices::push() noexcept {
   const std::uint64_t frame = frames_++;
-  const auto slot = static_cast<std::size_t>(frame % columns_);
-  std::ranges::fill(differences_.subspan(slot * places_, places_), not_computed);
-  filled_to_[slot] = 0;
+  differences_.begin(frame);
+  if (enhance_) enhanced_.begin(frame);
   return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
+}
+
+float DifferenceSlices::between(std::uint64_t a, std::uint64_t b) const noexcept {
+  return difference(kind_, query(a), query(b), descriptor_size_);
 }
 
 std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std::size_t first,
                                    std::size_t last) noexcept {
-  const auto slot = static_cast<std::size_t>(frame % columns_);
-  const std::span<const float> query_descriptor = query(frame);
-  const std::span<float> differences = differences_.subspan(slot * places_, places_);
-  std::size_t& filled_to = filled_to_[slot];
-  std::size_t computed = 0;
-  for (std::size_t row = std::max(first, filled_to); row < last; ++row) {
-    if (differences[row] != not_computed) continue;
-    differences[row] = euclidean(query_descriptor, map.place(row));
-    ++computed;
+  if (first >= last) return 0;
+  const std::size_t reach = enhance_ ? contrast_.reach() : 0;
+  const std::size_t from = first - std::min(first, reach);
+  const std::size_t to = std::min(last + reach, map.size());
+  const std::size_t computed = differences_.fill(frame, from, to, [&](std::size_t row) {
+    return difference(kind_, query(frame), map.place(row), descriptor_size_);
+  });
+  if (enhance_) {
+    const std::span<const float> column = differences_.column(frame);
+    enhanced_.fill(frame, first, last,
+                   [&](std::size_t row) { return contrast_.enhance(column, row, map.size()); });
   }
-  if (first <= filled_to) filled_to = std::max(filled_to, last);
   return computed;
 }
 

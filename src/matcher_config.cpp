@@ -36,8 +36,7 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
   if (!vmin_fits || !vmax_fits) return;
   if (config.vmin > config.vmax) {
     faults.push_back({"vmin", number(config.vmin) + " is above vmax, " + number(config.vmax)});
-  } else if (config.sequence_length >= 1 &&
-             velocity_range(config.sequence_length, config.vmin, config.vmax).count() == 0) {
+  } else if (velocity_range(config.sequence_length, config.vmin, config.vmax).count() == 0) {
     faults.push_back({"vmin, vmax",
                       "no velocity m/" + std::to_string(config.sequence_length) + " lies between " +
                           number(config.vmin) + " and " + number(config.vmax),
@@ -50,9 +49,19 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
 Faults validate(const MatcherConfig& config) {
   constexpr std::size_t many = 1'000'000'000;
   Faults faults;
-  check_range(faults, "ds", config.sequence_length, 1, 2'000);
+  check_range(faults, "ds", config.sequence_length, 0, 2'000);
   check_velocities(faults, config);
   check_range(faults, "rwindow", config.rwindow, 0, many);
+  if (config.enhance && config.rwindow < 2) {
+    faults.push_back({"rwindow", std::to_string(config.rwindow) + " leaves no rows to enhance by",
+                      "take 2 or more, or switch enhance off"});
+  }
+  if (config.enhance && config.use == Use::close_loops && config.exclude <= config.rwindow / 2) {
+    faults.push_back(
+        {"exclude", std::to_string(config.exclude) + " is not above half of rwindow, " +
+                        std::to_string(config.rwindow / 2) +
+                        ": a difference would be enhanced by places that are still to come"});
+  }
   check_range(faults, "k", config.k, 1, 1'000);
   check_range(faults, "initial-k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace seqloop {
 
@@ -14,6 +15,7 @@ VelocityRange velocity_range(std::size_t ds, double vmin, double vmax) noexcept 
 }
 
 std::int64_t trajectory_offset(std::int64_t m, std::size_t i, std::size_t ds) noexcept {
+  if (ds == 0) return 0;  // a single frame is its own centre
   const auto length = static_cast<std::int64_t>(ds);
   const std::int64_t from_centre = static_cast<std::int64_t>(i) - length / 2;
   const std::int64_t numerator = 2 * m * from_centre + length;
@@ -36,6 +38,7 @@ Trajectories::Trajectories(Arena& arena, std::size_t ds, double vmin, double vma
 }
 
 double Trajectories::velocity(std::size_t line) const noexcept {
+  if (ds_ == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(range_.first + static_cast<std::int64_t>(line)) /
          static_cast<double>(ds_);
 }

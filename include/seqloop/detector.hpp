@@ -20,8 +20,9 @@
 
 namespace seqloop {
 
-/// Answers, frame by frame, whether the robot has been here before. One step for SeqCNNSLAM,
-/// A-SeqCNNSLAM and O-SeqCNNSLAM; they differ in which rows of the map are candidates.
+/// Answers, frame by frame, whether the robot has been here before. One step for all methods:
+/// SeqCNNSLAM, A-SeqCNNSLAM and O-SeqCNNSLAM differ in which rows of the map are candidates,
+/// SeqSLAM in how descriptors are compared and that differences are enhanced.
 class Detector {
  public:
   /// Bytes of every buffer beside the map's.
@@ -48,8 +49,9 @@ class Detector {
   ~Detector() = default;
 
   /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
-  /// @param descriptor [D] unit L2. Empty, of another size, not of unit length (NaN or infinity
-  ///   inside), or all zero where `blank_is_unreadable`: the frame could not be read. It counts,
+  /// @param descriptor [D] unit L2, or finite where the difference is mean absolute. Empty, of
+  ///   another size, not so, or blank where `blank_is_unreadable`: the frame could not be read. It
+  ///   counts,
   ///   the scene is taken to stand still, and the gate is `frame_error`: the answer that was due,
   ///   for the centre frame, is not given.
   /// Work: at most `most_work`. Allocates: never.
@@ -59,6 +61,12 @@ class Detector {
   /// @return [padded_size(D)]; at least one step must have been made
   [[nodiscard]] std::span<const float> newest_query() const noexcept {
     return slices_.query(slices_.frames() - 1);
+  }
+
+  /// The newest frame's column of the difference matrix: [capacity.places], below zero where nothing
+  /// was computed (everywhere, where not all rows are candidates, until a line needs it).
+  [[nodiscard]] std::span<const float> newest_column() const noexcept {
+    return slices_.column(slices_.frames() - 1);
   }
 
  private:

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <span>
 
+#include "seqloop/matcher_config.hpp"
+
 namespace seqloop {
 
 /// Descriptors are stored in rows of a whole number of these, the rest zero, so that a kernel has
@@ -21,6 +23,20 @@ inline constexpr std::size_t lanes = 16;
 /// @return 0 .. 2 for unit vectors
 /// Work: S subtractions and MACs. Allocates: never. Paper: Algorithm 2.
 [[nodiscard]] float euclidean(std::span<const float> a, std::span<const float> b) noexcept;
+
+/// Mean absolute difference, summed in the same fixed order.
+/// @param a, b [S] with S a whole number of lanes   @param size D, what the mean is over
+/// Work: S subtractions and adds. Allocates: never. Source: SeqSLAM.
+[[nodiscard]] float mean_absolute(std::span<const float> a, std::span<const float> b,
+                                  std::size_t size) noexcept;
+
+/// The one or the other.
+[[nodiscard]] float difference(Difference kind, std::span<const float> a, std::span<const float> b,
+                               std::size_t size) noexcept;
+
+/// Whether a descriptor says nothing about its picture, so that all such frames would look alike:
+/// all zero, or, where pictures are compared (mean absolute), all of one value.
+[[nodiscard]] bool blank(Difference kind, std::span<const float> descriptor) noexcept;
 
 /// Sum of the squares. NaN or infinite when a value is; zero only when all are.
 [[nodiscard]] double squared_norm(std::span<const float> vector) noexcept;

@@ -5,19 +5,22 @@
 #include <span>
 
 #include "seqloop/arena.hpp"
+#include "seqloop/column_ring.hpp"
+#include "seqloop/contrast.hpp"
+#include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop {
 
-/// The newest columns of the difference matrix D, as a ring that is filled where somebody looks.
-/// A difference is computed at most once. Columns are named by the frame that they belong to.
+/// The newest columns of the difference matrix D, ds + 1 of them, filled where somebody looks and
+/// enhanced where that is asked for. A difference is computed at most once. Columns are named by
+/// the frame that they belong to.
 class DifferenceSlices {
  public:
-  /// @param columns  differences kept, ds + 1
-  /// @param history  query descriptors kept, >= columns
+  /// @param history  query descriptors kept, above ds
   /// @param capacity places of the map, descriptor size
   /// Allocates: from the arena only.
-  DifferenceSlices(Arena& arena, std::size_t columns, std::size_t history,
+  DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
                    const Capacity& capacity);
 
   /// Begins the next frame's column, forgetting the oldest, and returns where its descriptor goes.
@@ -34,26 +37,33 @@ class DifferenceSlices {
     return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
   }
 
-  /// Makes sure that the differences of a frame to the rows [first, last) are there.
+  /// The difference of two of the newest `history` frames. Work: D MACs.
+  [[nodiscard]] float between(std::uint64_t a, std::uint64_t b) const noexcept;
+
+  /// Makes sure that the differences of a frame to the rows [first, last) are there; enhanced ones
+  /// need those of rwindow / 2 rows on either side too.
   /// @return how many had to be computed. Work: that many times D MACs. Allocates: never.
   std::size_t fill(const PlaceMap& map, std::uint64_t frame, std::size_t first,
                    std::size_t last) noexcept;
 
-  /// @param frame one of the newest `columns` frames
-  /// @return [capacity.places] distance 0 .. 2 where filled
+  /// @param frame one of the newest ds + 1 frames
+  /// @return [capacity.places] where filled: distance (0 .. 2 between unit vectors), or what
+  ///   `Contrast` makes of it
   [[nodiscard]] std::span<const float> column(std::uint64_t frame) const noexcept {
-    return differences_.subspan(static_cast<std::size_t>(frame % columns_) * places_, places_);
+    return enhance_ ? enhanced_.column(frame) : differences_.column(frame);
   }
 
  private:
-  std::size_t columns_;
+  Difference kind_;
+  bool enhance_;
+  Contrast contrast_;
   std::size_t history_;
-  std::size_t places_;
   std::size_t stride_;
+  std::size_t descriptor_size_;
   std::uint64_t frames_ = 0;
-  std::span<float> queries_;          // [history, padded_size(D)]
-  std::span<float> differences_;      // [columns, places]; below zero: not computed
-  std::span<std::size_t> filled_to_;  // [columns]: rows before this one are all there
+  std::span<float> queries_;  // [history, padded_size(D)]
+  ColumnRing differences_;
+  ColumnRing enhanced_;  // empty unless asked for
 };
 
 }  // namespace seqloop

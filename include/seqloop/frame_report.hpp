@@ -26,7 +26,7 @@ struct Match {
   /// Score by the best rival's score: 0 .. 1; above 1 or infinite when the rival of the last full
   /// search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
-  double velocity = 0.0;  ///< rows a frame
+  double velocity = 0.0;  ///< rows a frame; NaN for single frames
   std::size_t head = 0;   ///< row of the map at the newest column
 };
 

@@ -7,6 +7,12 @@
 
 namespace seqloop {
 
+/// How two descriptors are compared.
+enum class Difference : std::uint8_t {
+  euclidean,     ///< between unit vectors (Algorithm 2)
+  mean_absolute  ///< between patch-normalised pictures (SeqSLAM)
+};
+
 /// Which rows of the map a frame is compared with (ALGORITHMS: the methods).
 enum class Candidates : std::uint8_t {
   all,      ///< SeqCNNSLAM: every row
@@ -36,19 +42,24 @@ struct Standardisation {
 /// Everything a detector can be told, with the paper's values (Table 2) where it has any.
 struct MatcherConfig {
   Candidates candidates = Candidates::adaptive;
+  Difference difference = Difference::euclidean;
   Use use = Use::localise;
-  std::size_t sequence_length = 20;  ///< ds: a window holds ds + 1 columns; 1 .. 2,000 frames
-  double vmin = 0.8;                 ///< slowest trajectory, rows a frame; 0 .. vmax
-  double vmax = 1.2;                 ///< fastest trajectory, rows a frame; vmin .. 10
-  std::size_t rwindow = 10;          ///< rows around the best that do not count as rivals; >= 0
-  std::size_t k = 10;                ///< A-: number of ranges; 1 .. 1,000
-  std::size_t initial_k = 30;        ///< O-: K0, where K starts and falls back to; 1 .. 1,000
-  std::size_t num = 16;              ///< a range holds num + 1 rows; >= 1
-  std::size_t reinit = 450;          ///< L: every L-th matched frame searches all rows; >= 1
-  std::size_t exclude = 100;         ///< closing loops: newest frames that are no places; >= 1
-  Standardisation standardisation;
-  /// A descriptor of zeros (a covered lens, a black tunnel) counts as a frame that could not be
-  /// read. Otherwise all such frames look alike, and match each other with top certainty.
+  std::size_t sequence_length =
+      20;             ///< ds: a window holds ds + 1 columns; 0 .. 2,000 frames, 0: single frames
+  double vmin = 0.8;  ///< slowest trajectory, rows a frame; 0 .. vmax
+  double vmax = 1.2;  ///< fastest trajectory, rows a frame; vmin .. 10
+  std::size_t rwindow = 10;  ///< rows around the best that do not count as rivals; >= 0
+  /// SeqSLAM's local contrast enhancement: each difference becomes its deviation from those of the
+  /// rwindow rows around it. Needs rwindow >= 2; closing loops, exclude above rwindow / 2.
+  bool enhance = false;
+  std::size_t k = 10;          ///< A-: number of ranges; 1 .. 1,000
+  std::size_t initial_k = 30;  ///< O-: K0, where K starts and falls back to; 1 .. 1,000
+  std::size_t num = 16;        ///< a range holds num + 1 rows; >= 1
+  std::size_t reinit = 450;    ///< L: every L-th matched frame searches all rows; >= 1
+  std::size_t exclude = 100;   ///< closing loops: newest frames that are no places; >= 1
+  Standardisation standardisation{};
+  /// A blank descriptor (`blank()`: a covered lens, a black tunnel) counts as a frame that could
+  /// not be read. Otherwise all such frames look alike, and match each other with top certainty.
   bool blank_is_unreadable = true;
   float max_uniqueness = 0.94F;  ///< a match must be at least this unique; above 0 .. 1
 

@@ -18,7 +18,7 @@ struct VelocityRange {
   }
 };
 
-/// @param ds   sequence length, >= 1
+/// @param ds   sequence length; 0: single frames, whose one line is a point
 /// @param vmin, vmax 0 <= vmin <= vmax, rows a frame
 [[nodiscard]] VelocityRange velocity_range(std::size_t ds, double vmin, double vmax) noexcept;
 
@@ -36,7 +36,8 @@ class Trajectories {
   [[nodiscard]] std::size_t window() const noexcept { return ds_ + 1; }        ///< columns, ds + 1
   [[nodiscard]] std::size_t centre() const noexcept { return ds_ / 2; }        ///< h
   [[nodiscard]] std::size_t count() const noexcept { return range_.count(); }  ///< M
-  [[nodiscard]] double velocity(std::size_t line) const noexcept;              ///< rows a frame
+  /// Rows a frame; NaN for single frames.
+  [[nodiscard]] double velocity(std::size_t line) const noexcept;
 
   /// @param line index of the velocity, slowest first, 0 .. count()
   /// @return [window()] rows above the centre row, column by column; never falls along the window

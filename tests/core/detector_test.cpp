@@ -18,9 +18,10 @@ oracle::Vectors two_laps(std::uint32_t seed, std::size_t frames, std::size_t siz
 TEST(Detector, NeverComputesMoreThanThePlanSays) {
   for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
     for (const Use use : {Use::localise, Use::close_loops}) {
-      for (const std::size_t exclude : {1U, 5U, 40U}) {
+      for (const std::size_t exclude : {1U, 5U, 6U, 40U}) {
         MatcherConfig config = paper(candidates, 20, use);
         config.exclude = exclude;
+        config.enhance = exclude > 5;
         config.reinit = 30;
         const oracle::Vectors drive = two_laps(9, 80, 12);
         const bool closing = use == Use::close_loops;
@@ -43,9 +44,10 @@ TEST(Detector, NeverComputesMoreThanThePlanSays) {
 }
 
 TEST(Detector, StaysWithinThePlanWhenLoopsAreClosedOntoTheWindowItself) {
-  for (const auto& [ds, exclude, vmin] :
-       {std::tuple{200U, 1U, 0.8}, std::tuple{100U, 5U, 0.5}, std::tuple{40U, 1U, 0.0}}) {
+  for (const auto& [ds, exclude, vmin] : {std::tuple{200U, 1U, 0.8}, std::tuple{100U, 5U, 0.5},
+                                          std::tuple{40U, 1U, 0.0}, std::tuple{40U, 6U, 0.0}}) {
     MatcherConfig config = paper(Candidates::all, ds, Use::close_loops);
+    config.enhance = exclude > 5;
     config.exclude = exclude;
     config.vmin = vmin;
     const Work most = Detector::most_work(config, {300, 4});
@@ -72,6 +74,33 @@ TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
     right += report.match && report.match->place == *report.frame ? 1U : 0U;
   }
   EXPECT_EQ(right, 178U) << "all but the window and the two";
+}
+
+TEST(Detector, RefusesAnEnhancementThatWouldNeedTheFuture) {
+  MatcherConfig config = paper(Candidates::all, 20, Use::close_loops);
+  config.enhance = true;
+  config.exclude = 5;
+  config.rwindow = 10;
+  EXPECT_EQ(validate(config).size(), 1U);
+  config.exclude = 6;
+  EXPECT_TRUE(validate(config).empty());
+  config.rwindow = 1;
+  EXPECT_EQ(validate(config).size(), 1U) << "no rows around";
+}
+
+TEST(Detector, PatchesNeedNotBeUnitButFiniteAndNotBlank) {
+  MatcherConfig config;
+  config.candidates = Candidates::all;
+  config.difference = Difference::mean_absolute;
+  config.standardisation.on = false;
+  PlaceMap map = map_of(oracle::drive(6, 60, 16));
+  Detector detector(config, map);
+  EXPECT_EQ(detector.step(std::vector<float>(16, 127.5F)).gate, Gate::frame_error) << "blank";
+  std::vector<float> patches(16, 127.5F);
+  patches[3] = 200.0F;
+  EXPECT_EQ(detector.step(patches).gate, Gate::warming_up);
+  patches[4] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(detector.step(patches).gate, Gate::frame_error);
 }
 
 TEST(Detector, SpreadsTheExhaustiveWorkEvenly) {
@@ -180,7 +209,7 @@ TEST(Detector, SaysWhenTheMapIsFullAndKeepsAnswering) {
 
 TEST(Detector, ListsEveryFaultOfItsSetUp) {
   MatcherConfig config;
-  config.sequence_length = 0;
+  config.sequence_length = 2'001;
   config.vmin = 1.3;
   config.k = 0;
   config.num = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/matcher.hpp"
+#include "seqloop/contrast.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/latency_histogram.hpp"
 #include "seqloop/trajectories.hpp"
@@ -35,6 +36,58 @@ TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
     }
     EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
     EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
+  }
+}
+
+TEST(MeanAbsolute, EqualsTheDefinitionWithoutThePadding) {
+  std::mt19937 random(12);
+  std::normal_distribution<float> normal;
+  for (const std::size_t size : {1U, 15U, 16U, 17U, 1024U, 1025U, 2048U}) {
+    std::vector<float> a(padded_size(size), 0.0F);
+    std::vector<float> b(padded_size(size), 0.0F);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < size; ++i) {
+      a[i] = normal(random);
+      b[i] = normal(random);
+      sum += std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    }
+    EXPECT_NEAR(mean_absolute(a, b, size), sum / static_cast<double>(size), 1e-5) << size;
+    EXPECT_EQ(mean_absolute(a, a, size), 0.0F);
+  }
+}
+
+TEST(Blank, IsZeroForVectorsAndFlatForPatches) {
+  const std::vector<float> zero(4, 0.0F);
+  const std::vector<float> flat(4, 127.5F);
+  const std::vector<float> seen{127.5F, 127.5F, 127.5F, 128.0F};
+  EXPECT_TRUE(blank(Difference::euclidean, zero));
+  EXPECT_TRUE(blank(Difference::mean_absolute, zero));
+  EXPECT_FALSE(blank(Difference::euclidean, flat));
+  EXPECT_TRUE(blank(Difference::mean_absolute, flat));
+  EXPECT_FALSE(blank(Difference::mean_absolute, seen));
+  EXPECT_FALSE(blank(Difference::mean_absolute,
+                     std::vector<float>(3, std::numeric_limits<float>::quiet_NaN())));
+}
+
+TEST(Contrast, EnhancesByHandAndIsNeverNegative) {
+  // Rows 1, 2, 6 have mean 3 and sample deviation sqrt(7); the constant is 2 / sqrt(3).
+  const Contrast contrast(2);
+  EXPECT_EQ(contrast.reach(), 1U);
+  const std::vector<float> column{1.0F, 2.0F, 6.0F, 6.0F, 6.0F};
+  const double lift = 2.0 / std::sqrt(3.0);
+  EXPECT_NEAR(contrast.enhance(column, 1, 5), lift - 1.0 / std::sqrt(7.0), 1e-6);
+  EXPECT_NEAR(contrast.enhance(column, 0, 5), lift - std::sqrt(0.5), 1e-6) << "clipped to two rows";
+  EXPECT_NEAR(contrast.enhance(column, 3, 5), lift, 1e-6) << "nothing deviates";
+  EXPECT_NEAR(contrast.enhance(column, 2, 3), lift + std::sqrt(0.5), 1e-6) << "the map ends here";
+  EXPECT_NEAR(contrast.enhance(column, 0, 1), lift, 1e-6) << "a single row";
+  // The lowest that a sample can lie below its mean: one lower, all others equal.
+  for (const std::size_t rwindow : {2U, 3U, 10U, 50U}) {
+    const Contrast wide(rwindow);
+    std::vector<float> dip(2 * wide.reach() + 1, 1.7F);
+    dip[wide.reach()] = 0.1F;
+    const float lowest = wide.enhance(dip, wide.reach(), dip.size());
+    EXPECT_GE(lowest, 0.0F);
+    EXPECT_NEAR(lowest, 0.0F, 1e-6);
   }
 }
 
@@ -187,7 +240,7 @@ class Slices : public testing::Test {
   oracle::Vectors drive_ = oracle::drive(21, 30, 20);
   PlaceMap map_ = map_of({drive_.begin(), drive_.begin() + 6});
   TestArena memory_;
-  DifferenceSlices slices_{memory_.arena, 3, 5, capacity};
+  DifferenceSlices slices_{memory_.arena, {.sequence_length = 2}, 5, capacity};
 
   void push(std::size_t frame) {
     const std::span<float> query = slices_.push();
@@ -223,6 +276,24 @@ TEST_F(Slices, HoldTheRightColumnAfterWrappingTwice) {
   }
 }
 
+TEST_F(Slices, EnhancedOnesComputeTheRowsAroundOnce) {
+  TestArena memory;
+  DifferenceSlices enhanced(memory.arena, {.sequence_length = 2, .rwindow = 2, .enhance = true}, 5,
+                            capacity);
+  const std::span<float> query = enhanced.push();
+  std::ranges::copy(drive_[3], query.begin());
+  EXPECT_EQ(enhanced.fill(map_, 0, 3, 3), 0U);
+  EXPECT_EQ(enhanced.fill(map_, 0, 2, 4), 4U) << "one row on either side";
+  EXPECT_LT(enhanced.column(0)[1], 0.0F) << "not asked for";
+  EXPECT_EQ(enhanced.fill(map_, 0, 1, 5), 2U);
+  EXPECT_EQ(enhanced.fill(map_, 0, 0, 6), 0U) << "the ends are clipped to the map";
+  push(3);
+  slices_.fill(map_, 0, 0, 6);
+  for (std::size_t row = 0; row < 6; ++row) {
+    EXPECT_EQ(enhanced.column(0)[row], Contrast(2).enhance(slices_.column(0), row, 6));
+  }
+}
+
 TEST(PlaceMap, SaysWhenItIsFullAndStaysAsItWas) {
   PlaceMap map({2, 3});
   EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F, 0.0F}));
@@ -250,7 +321,7 @@ TEST(PlaceMap, TakesOnlyWhatFits) {
 
 TEST(ChangeDegree, EqualsEquationFourAndNamesItsEdges) {
   TestArena memory;
-  DifferenceSlices slices(memory.arena, 3, 12, {1, 2});
+  DifferenceSlices slices(memory.arena, {.sequence_length = 2}, 12, {1, 2});
   ChangeDegree degree;
   std::vector<std::vector<float>> frames;
   const auto see = [&](float a, float b) {

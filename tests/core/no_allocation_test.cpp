@@ -34,15 +34,17 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
   const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
   for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
     for (const Use use : {Use::localise, Use::close_loops}) {
-      for (const bool standardise : {false, true}) {
+      for (const bool beyond : {false, true}) {  // SeqSLAM's comparison, standardised too
         MatcherConfig config;
+        config.difference = beyond ? Difference::mean_absolute : Difference::euclidean;
+        config.enhance = beyond;
         config.candidates = candidates;
         config.use = use;
         config.exclude = 30;
         config.reinit = 20;
-        config.standardisation.on = standardise;
+        config.standardisation.on = beyond;
         PlaceMap map = use == Use::localise ? map_of(lap) : PlaceMap({200, 40});
-        if (use == Use::localise && standardise) map.standardise();
+        if (use == Use::localise && beyond) map.standardise();
         Detector detector(config, map);
         std::size_t matched = 0;
         const AllocationGuard guard;

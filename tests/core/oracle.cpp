@@ -13,8 +13,14 @@ namespace {
 using Int = std::int64_t;
 constexpr double none = std::numeric_limits<double>::infinity();
 
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
+double distance(Difference kind, const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0.0;
+  if (kind == Difference::mean_absolute) {
+    for (std::size_t d = 0; d < a.size(); ++d) {
+      sum += std::abs(static_cast<double>(a[d]) - static_cast<double>(b[d]));
+    }
+    return sum / static_cast<double>(a.size());
+  }
   for (std::size_t d = 0; d < a.size(); ++d) {
     const double difference = static_cast<double>(a[d]) - static_cast<double>(b[d]);
     sum += difference * difference;
@@ -41,8 +47,11 @@ class Matcher {
                                                                         : 0)) {
     for (const auto& row : r_) {
       d_.emplace_back();
-      for (const auto& column : q_) d_.back().push_back(distance(row, column));
+      for (const auto& column : q_) {
+        d_.back().push_back(distance(config.difference, row, column));
+      }
     }
+    if (config.enhance) enhance();
   }
 
   std::vector<Answer> run() {
@@ -55,7 +64,33 @@ class Matcher {
   }
 
  private:
+  /// Contrast enhancement of the whole matrix, column by column.
+  void enhance() {
+    const auto half = static_cast<Int>(config_.rwindow / 2);
+    const auto rows = static_cast<Int>(r_.size());
+    const auto n = static_cast<double>(2 * half + 1);
+    const std::vector<std::vector<double>> plain = d_;
+    for (std::size_t column = 0; column < q_.size(); ++column) {
+      for (Int row = 0; row < rows; ++row) {
+        std::vector<double> around;
+        for (Int r = std::max<Int>(0, row - half); r <= std::min(rows - 1, row + half); ++r) {
+          around.push_back(plain[static_cast<std::size_t>(r)][column]);
+        }
+        const auto count = static_cast<double>(around.size());
+        double mean = 0.0;
+        for (const double value : around) mean += value / count;
+        double variance = 0.0;
+        for (const double value : around) variance += (value - mean) * (value - mean);
+        double& cell = d_[static_cast<std::size_t>(row)][column];
+        const double deviation = count > 1.0 ? std::sqrt(variance / (count - 1.0)) : 0.0;
+        // Below this it is this function's own rounding.
+        cell = (deviation > 1e-12 ? (cell - mean) / deviation : 0.0) + (n - 1.0) / std::sqrt(n);
+      }
+    }
+  }
+
   Int offset(Int m, Int i) const {
+    if (ds_ == 0) return 0;
     return static_cast<Int>(std::floor(static_cast<long double>(2 * m * (i - h_) + ds_) /
                                        static_cast<long double>(2 * ds_)));
   }
@@ -87,8 +122,8 @@ class Matcher {
     double above = 0.0;
     double below = 0.0;
     for (Int i = n - 10; i <= n - 1; ++i) {
-      above += distance(q(n), q(i));
-      below += distance(q(n - 1), q(i - 1));
+      above += distance(config_.difference, q(n), q(i));
+      below += distance(config_.difference, q(n - 1), q(i - 1));
     }
     if (below == 0.0) return above == 0.0 ? 1.0 : none;
     return above / below;

@@ -89,6 +89,53 @@ TEST_F(Run, MatchFollowsThePaperToTheLetter) {
   }
 }
 
+TEST_F(Run, SeqSlamTakesPatchesAsTheyAreAndEnhances) {
+  oracle::Vectors reference = oracle::drive(8, 120, 20, 0.2F);
+  oracle::Vectors query = oracle::drive(8, 110, 20, 0.3F);
+  for (oracle::Vectors* rows : {&reference, &query}) {
+    for (auto& row : *rows) {
+      for (float& value : row) value = 127.5F + 100.0F * value;
+    }
+  }
+  write_npy("r.npy", reference);
+  write_npy("q.npy", query);
+  MatcherConfig config;
+  config.candidates = Candidates::all;
+  config.difference = Difference::mean_absolute;
+  for (const bool enhance : {true, false}) {
+    for (const bool closing : {false, true}) {
+      config.enhance = enhance;
+      config.exclude = 20;
+      expect_done(std::string("match --method seqslam --exclude 20 --query q.npy --out m.csv") +
+                  (enhance ? "" : " --enhance off") + (closing ? "" : " --reference r.npy"));
+      expect_list(oracle::match(closing ? oracle::Vectors{} : reference, query, config));
+    }
+  }
+}
+
+TEST_F(Run, SingleImagesAreASequenceOfNone) {
+  const oracle::Vectors reference = oracle::drive(8, 60, 20, 0.2F);
+  const oracle::Vectors query = oracle::drive(8, 50, 20, 0.3F);
+  write_npy("r.npy", reference);
+  write_npy("q.npy", query);
+  for (const bool enhance : {false, true}) {
+    MatcherConfig config;
+    config.candidates = Candidates::all;
+    config.sequence_length = 0;
+    config.enhance = enhance;
+    expect_done(std::string("match --paper --method single --reference r.npy --query q.npy ") +
+                "--out m.csv --enhance " + (enhance ? "on" : "off"));
+    const auto wanted = oracle::match(reference, query, config);
+    const auto table = evaluation::CsvTable::read(file("m.csv"));
+    ASSERT_EQ(wanted.size(), 50U);
+    ASSERT_EQ(table.rows(), 50U) << "every frame has an answer";
+    for (std::size_t row = 0; row < wanted.size(); ++row) {
+      EXPECT_EQ(static_cast<std::int64_t>(table.whole(row, 1)), wanted[row].match);
+      EXPECT_NEAR(table.number(row, table.column("uniqueness")), wanted[row].uniqueness, 1e-5);
+    }
+  }
+}
+
 TEST_F(Run, RunAndMatchTreatRowsThatAreNotUnitAlike) {
   oracle::Vectors query = oracle::drive(5, 80, 20, 0.3F);
   for (std::size_t row = 0; row < query.size(); ++row) {

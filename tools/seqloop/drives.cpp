@@ -137,9 +137,9 @@ std::unique_ptr<Describer> open_describer(const DriveSettings& settings) {
   return std::make_unique<opencv::DnnDescriber>(model);
 }
 
-files::Matrix read_descriptors(const std::filesystem::path& path) {
+files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
   files::Matrix descriptors = files::read_npy(path);
-  normalise_rows(descriptors, path);
+  if (difference == Difference::euclidean) normalise_rows(descriptors, path);
   return descriptors;
 }
 
@@ -151,7 +151,8 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     throw SetupError({flag, "not given", "an image folder, a video or an .npy file"});
   }
   if (is_described(path)) {
-    return std::make_unique<files::DescriptorSource>(read_descriptors(path), settings.fps);
+    return std::make_unique<files::DescriptorSource>(read_descriptors(path, settings.difference),
+                                                     settings.fps);
   }
   return opencv::open_source(path, {.frames_per_second = settings.fps});
 }

@@ -9,6 +9,7 @@
 #include "opencv/dnn_describer.hpp"
 #include "seqloop/describer.hpp"
 #include "seqloop/frame_source.hpp"
+#include "seqloop/matcher_config.hpp"
 #include "seqloop/options.hpp"
 
 namespace seqloop::program {
@@ -18,6 +19,7 @@ struct DriveSettings {
   opencv::ModelSettings model;  ///< empty path: the built-in descriptor
   std::vector<std::string> model_flags_given;
   double fps = 10.0;
+  Difference difference = Difference::euclidean;  ///< how described drives will be compared
 };
 
 /// Model and picture flags. @param settings lives as long as the table
@@ -33,9 +35,10 @@ void add_drive_options(OptionTable& options, DriveSettings& settings);
                                                       const std::string& flag,
                                                       const DriveSettings& settings);
 
-/// Reads an `.npy` file, and brings its rows to unit length, as Algorithm 1 wants them; says so
-/// where one was not. Throws SetupError.
-[[nodiscard]] files::Matrix read_descriptors(const std::filesystem::path& path);
+/// Reads an `.npy` file, and brings its rows to unit length where Euclid wants that (Algorithm 1);
+/// says so where one was not. Throws SetupError.
+[[nodiscard]] files::Matrix read_descriptors(const std::filesystem::path& path,
+                                             Difference difference);
 
 /// Whether a drive was described before, so that no describer is needed.
 [[nodiscard]] bool is_described(const std::filesystem::path& path);

@@ -31,7 +31,7 @@ std::string frame_json(const ProcessedFrame& processed, bool deadline_missed) {
     json["match"] = report.match->place;
     json["score"] = finite(static_cast<double>(report.match->score));
     json["uniqueness"] = finite(static_cast<double>(report.match->uniqueness));
-    json["velocity"] = report.match->velocity;
+    json["velocity"] = finite(report.match->velocity);
     json["head"] = report.match->head;
   }
   json["k"] = report.k;

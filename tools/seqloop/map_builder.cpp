@@ -9,7 +9,6 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/interruption.hpp"
 #include "seqloop/pipeline.hpp"
-#include "seqloop/progress.hpp"
 
 namespace seqloop::program {
 
@@ -19,10 +18,9 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
 }
 
 void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
-              const MatcherConfig& config) {
+              const MatcherConfig& config, Progress& progress) {
   std::vector<float> buffer(map.descriptor_size());
   std::vector<float> last(map.descriptor_size(), 0.0F);
-  Progress progress("mapping", drive.frame_count());
   std::size_t readable = 0;
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
@@ -32,8 +30,8 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
       progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     } else {
       ++readable;
-      const bool blank = squared_norm(descriptor) == 0.0;
-      if (!(blank && config.blank_is_unreadable)) std::ranges::copy(descriptor, last.begin());
+      const bool left_out = config.blank_is_unreadable && blank(config.difference, descriptor);
+      if (!left_out) std::ranges::copy(descriptor, last.begin());
     }
     if (!map.add(last)) {
       throw SetupError({"max-places",

@@ -3,6 +3,7 @@
 #include "seqloop/describer.hpp"
 #include "seqloop/frame_source.hpp"
 #include "seqloop/place_map.hpp"
+#include "seqloop/progress.hpp"
 
 namespace seqloop::program {
 
@@ -12,6 +13,7 @@ namespace seqloop::program {
 /// Makes a map of a whole drive. A frame that cannot be read is told of, and its place shows what
 /// the frame before it showed, so that places stay in step with frames.
 /// Throws SetupError when the map has too little room or no frame can be read.
-void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config);
+void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
+              Progress& progress);
 
 }  // namespace seqloop::program

@@ -29,14 +29,18 @@ struct MatchSettings {
   MatcherSettings matcher;
 };
 
-/// A row of the match list. NaN carries no sign here.
+/// NaN carries no sign here.
+template <class Number>
+std::string precise(Number value) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
+}
+
+/// A row of the match list.
 std::string csv_row(const FrameReport& report) {
   const Match& match = *report.match;
-  const std::string uniqueness =
-      std::isnan(match.uniqueness) ? "nan" : fmt::format("{:.9g}", match.uniqueness);
-  return fmt::format("{},{},{:.9g},{},{:.9g},{},{},{},{}\n", *report.frame, match.place,
-                     match.score, uniqueness, match.velocity, match.head, report.work.candidates,
-                     report.k, report.work.distances);
+  return fmt::format("{},{},{},{},{},{},{},{},{}\n", *report.frame, match.place,
+                     precise(match.score), precise(match.uniqueness), precise(match.velocity),
+                     match.head, report.work.candidates, report.k, report.work.distances);
 }
 
 void match(const MatchSettings& settings, Faults faults) {
@@ -49,9 +53,10 @@ void match(const MatchSettings& settings, Faults faults) {
   if (settings.query.empty()) {
     faults.push_back({"query", "not given", "--query Q.npy"});
   } else {
-    collect(faults, [&] { query = read_descriptors(settings.query); });
+    collect(faults, [&] { query = read_descriptors(settings.query, config.difference); });
   }
-  if (!closing) collect(faults, [&] { reference = read_descriptors(settings.reference); });
+  if (!closing)
+    collect(faults, [&] { reference = read_descriptors(settings.reference, config.difference); });
   std::unique_ptr<files::OutputFile> out;
   refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
   if (settings.out.empty()) {
@@ -74,7 +79,8 @@ void match(const MatchSettings& settings, Faults faults) {
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
-    fill_map(map, drive, nullptr, config);
+    Progress mapping("mapping", drive.frame_count());
+    fill_map(map, drive, nullptr, config, mapping);
   }
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");

@@ -1,36 +1,57 @@
 #include "seqloop/matcher_settings.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace seqloop::program {
 namespace {
 
-void resolve_method(const std::string& method, MatcherConfig& config, Faults& faults) {
-  static const std::vector<std::string> methods{"seqcnnslam", "a-seqcnnslam", "o-seqcnnslam"};
-  if (method == "seqcnnslam") {
-    config.candidates = Candidates::all;
-  } else if (method == "a-seqcnnslam") {
-    config.candidates = Candidates::ranges;
-  } else if (method == "o-seqcnnslam") {
-    config.candidates = Candidates::adaptive;
-  } else if (method == "seqslam") {
-    faults.push_back({"method", "seqslam is not in this version",
-                      "take seqcnnslam, a-seqcnnslam or o-seqcnnslam"});
-  } else if (method.empty()) {
-    faults.push_back({"method", "not given", "--method seqcnnslam, a-seqcnnslam or o-seqcnnslam"});
-  } else {
-    const std::string meant = nearest(method, methods);
-    faults.push_back({"method", "'" + method + "' is no known method",
-                      meant.empty() ? "take seqcnnslam, a-seqcnnslam or o-seqcnnslam"
-                                    : "did you mean '" + meant + "'?"});
+struct Method {
+  std::string name;
+  Candidates candidates;
+};
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all{{"seqslam", Candidates::all},
+                                       {"seqcnnslam", Candidates::all},
+                                       {"a-seqcnnslam", Candidates::ranges},
+                                       {"o-seqcnnslam", Candidates::adaptive},
+                                       {"single", Candidates::all}};
+  return all;
+}
+
+void resolve_method(const std::string& name, MatcherConfig& config, Faults& faults) {
+  const auto method = std::ranges::find(methods(), name, &Method::name);
+  if (method != methods().end()) {
+    config.candidates = method->candidates;
+    return;
   }
+  const std::string advice = fmt::format("--method {}", fmt::join(method_names(), ", "));
+  if (name.empty()) {
+    faults.push_back({"method", "not given", advice});
+    return;
+  }
+  const std::string meant = nearest(name, method_names());
+  faults.push_back({"method", "'" + name + "' is no known method",
+                    meant.empty() ? advice : "did you mean '" + meant + "'?"});
+}
+
+Difference parse_difference(std::string_view text) {
+  if (text == "euclidean") return Difference::euclidean;
+  if (text == "mean-absolute") return Difference::mean_absolute;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither euclidean nor mean-absolute");
 }
 
 }  // namespace
 
 void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   MatcherConfig& config = settings.config;
-  options.text("method", settings.method, "seqcnnslam, a-seqcnnslam or o-seqcnnslam");
+  options.text("method", settings.method,
+               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence");
   options.flag("paper", settings.paper, "follow the paper to the letter");
   options.count("ds", config.sequence_length, "sequence length, frames [20]");
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
@@ -43,7 +64,7 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
   options.add(
       {"standardise", ValueKind::on_off,
-       "weigh features by their running statistics [on, off under --paper]",
+       "weigh features by their running statistics [on; off under --paper and for seqslam]",
        [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
   options.count("standardise-prior", config.standardisation.prior_frames,
                 "frames that the map's statistics count for in a new drive [20]");
@@ -51,22 +72,45 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "frames after which statistics have mostly moved on [100]");
   options.number("max-uniqueness", config.max_uniqueness,
                  "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
-  options.on_off("enhance", settings.enhance, "local contrast enhancement [off]");
+  options.add({"difference", ValueKind::text,
+               "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
+               [&settings](std::string_view value) {
+                 settings.difference = parse_difference(value);
+               }});
+  options.add({"enhance", ValueKind::on_off,
+               "enhance differences by the contrast with the rows around [off; on for seqslam]",
+               [&settings](std::string_view value) { settings.enhance = parse_on_off(value); }});
   options.text("arithmetic", settings.arithmetic, "float [float]");
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+bool compares_patches(const MatcherSettings& settings) {
+  const bool seqslam = settings.method == "seqslam";
+  return settings.difference ? *settings.difference == Difference::mean_absolute : seqslam;
 }
 
 MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) {
   MatcherConfig config = settings.config;
   config.use = use;
-  config.standardisation.on = settings.standardise.value_or(!settings.paper);
+  const bool patches = compares_patches(settings);
+  config.difference = patches ? Difference::mean_absolute : Difference::euclidean;
+  config.enhance = settings.enhance.value_or(settings.method == "seqslam");
+  config.standardisation.on = settings.standardise.value_or(!settings.paper && !patches);
   config.blank_is_unreadable = !settings.paper;
   resolve_method(settings.method, config, faults);
-  if (settings.enhance) {
-    faults.push_back({"enhance", "contrast enhancement is not in this version", "--enhance off"});
-  }
   if (settings.arithmetic != "float") {
     faults.push_back({"arithmetic", "'" + settings.arithmetic + "' is not in this version",
                       "--arithmetic float"});
+  }
+  if (settings.method == "single") {
+    config.sequence_length = 0;
+  } else if (config.sequence_length == 0) {
+    faults.push_back({"ds", "0 frames are no sequence", "take --method single, or 1 or more"});
   }
   for (Fault& fault : validate(config)) faults.push_back(std::move(fault));
   return config;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/options.hpp"
@@ -13,13 +14,20 @@ struct MatcherSettings {
   MatcherConfig config;
   std::string method;
   bool paper = false;
-  std::optional<bool> standardise;  ///< on unless --paper, when nobody says
-  bool enhance = false;
+  std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says
+  std::optional<bool> standardise;  ///< on unless --paper or SeqSLAM, when nobody says
+  std::optional<bool> enhance;      ///< on for SeqSLAM alone, when nobody says
   std::string arithmetic = "float";
 };
 
 /// @param settings lives as long as the table
 void add_matcher_options(OptionTable& options, MatcherSettings& settings);
+
+/// What `--method` can be.
+[[nodiscard]] std::vector<std::string> method_names();
+
+/// Whether patch-normalised pictures are compared, as SeqSLAM does, not unit vectors.
+[[nodiscard]] bool compares_patches(const MatcherSettings& settings);
 
 /// @param faults everything that is wrong is added
 /// @return the configuration to build a detector with, if there were none

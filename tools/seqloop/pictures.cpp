@@ -102,7 +102,8 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < queries_.size(); ++column) {
       differences.at<float>(static_cast<int>(rows - 1 - row), static_cast<int>(column)) =
-          euclidean(queries_[column], map.place(place_of(row)));
+          difference(difference_, queries_[column], map.place(place_of(row)),
+                     map.descriptor_size());
     }
   }
   cv::Mat plot;

@@ -18,6 +18,9 @@ namespace seqloop::program {
 /// as the drive grows, and the decisions.
 class PictureRecorder {
  public:
+  /// @param difference what the matrix shows
+  explicit PictureRecorder(Difference difference) noexcept : difference_(difference) {}
+
   /// @param query what the detector compared, as `Detector::newest_query` gives it
   void add(const FrameReport& report, std::span<const float> query);
 
@@ -40,6 +43,7 @@ class PictureRecorder {
     Match match;
   };
 
+  Difference difference_;
   std::uint64_t step_ = 1;  // every step_-th frame is kept
   std::vector<std::vector<float>> queries_;
   std::vector<Decision> decisions_;

@@ -13,6 +13,9 @@ class Progress {
  public:
   Progress(std::string doing, std::optional<std::uint64_t> frames);
 
+  /// Draws nothing; `tell` still tells.
+  Progress() = default;
+
   /// One frame more is done.
   void step();
 
@@ -27,7 +30,7 @@ class Progress {
 
   std::string doing_;
   std::optional<std::uint64_t> frames_;
-  bool shown_;
+  bool shown_ = false;
   std::uint64_t done_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point drawn_ = start_;

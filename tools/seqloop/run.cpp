@@ -129,7 +129,8 @@ void run(const RunSettings& settings, Faults faults) {
   if (!settings.pictures.empty()) make_folder(settings.pictures);
   PlaceMap map({setup.places, setup.descriptor_size});
   if (setup.reference) {
-    fill_map(map, *setup.reference, setup.describer.get(), setup.config);
+    Progress mapping("mapping", setup.reference->frame_count());
+    fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
     tell_notes(settings.reference, *setup.reference);
   }
   Detector detector(setup.config, map);
@@ -138,7 +139,7 @@ void run(const RunSettings& settings, Faults faults) {
                     settings.pace);
   RunSummary summary(std::chrono::duration_cast<Nanoseconds>(
       std::chrono::duration<double, std::milli>(settings.budget_ms)));
-  PictureRecorder recorder;
+  PictureRecorder recorder(setup.config.difference);
 
   Progress progress("running", setup.source->frame_count());
   while (!interrupted()) {

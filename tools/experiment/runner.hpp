@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "experiment/experiment.hpp"
+
+namespace seqloop::experiment {
+
+/// Runs an experiment and writes its report to a folder.
+///
+/// Everything that can be wrong is looked for before any work: drives, models, truths, lengths.
+/// Then descriptors are computed, each once for all methods, and every run is matched. Both are
+/// kept in the folder (`descriptors/`, `runs/`) under names that tell their settings, inputs and
+/// the program's version, so that a second run goes on where the first one stopped.
+///
+/// @param threads jobs at once; runs of a timed experiment are matched one at a time
+/// Throws SetupError (every fault), files::IoError, and when it is interrupted.
+void run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
+                    std::size_t threads);
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,119 @@
+#include "experiment/section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace seqloop::experiment {
+namespace {
+
+/// A value as settings have it.
+std::string plain(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+  if (const auto* decimal = node.as_floating_point()) return fmt::format("{}", decimal->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  return {};
+}
+
+}  // namespace
+
+void Section::refuse(const std::string& why, const std::string& remedy) const {
+  faults_.push_back({where(), why, remedy});
+}
+
+std::string Section::name(const char* kind, const Names& taken) const {
+  const toml::node* node = table_.get("name");
+  const auto* name = node == nullptr ? nullptr : node->as_string();
+  if (name == nullptr || name->get().empty()) {
+    refuse(fmt::format("a [[{}]] without a name", kind), "name = \"…\"");
+    return {};
+  }
+  if (std::ranges::find(taken, name->get()) != taken.end()) {
+    refuse(fmt::format("there is a [[{}]] '{}' already", kind, name->get()));
+  }
+  return name->get();
+}
+
+Names Section::names(const char* key) const {
+  const toml::node* node = table_.get(key);
+  return node == nullptr ? Names{} : program::read_names(*node, file_, key, faults_);
+}
+
+Names Section::references(const char* key, const char* kind, const Names& known) const {
+  Names found;
+  for (std::string& name : names(key)) {
+    if (std::ranges::find(known, name) != known.end()) {
+      found.push_back(std::move(name));
+      continue;
+    }
+    const std::string meant = program::nearest(name, known);
+    faults_.push_back({program::where(file_, *table_.get(key)),
+                       fmt::format("there is no [[{}]] '{}'", kind, name),
+                       meant.empty() ? "" : "did you mean '" + meant + "'?"});
+  }
+  return found;
+}
+
+std::vector<Setting> Section::set_all(const program::OptionTable& options,
+                                      const Names& others) const {
+  const auto found = read_options(table_, file_, options, {.ignored = others}, faults_);
+  std::vector<Setting> settings = combinations(found).front();
+  set(options, found, settings);
+  return settings;
+}
+
+std::vector<program::WrittenOption> Section::written(const program::OptionTable& options,
+                                                     const Names& others) const {
+  return read_options(table_, file_, options, {.ignored = others, .lists = true}, faults_);
+}
+
+void Section::set(const program::OptionTable& options,
+                  const std::vector<program::WrittenOption>& written,
+                  const std::vector<Setting>& chosen) const {
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const program::WrittenOption own{options.find(chosen[i].name), written[i].where, {}};
+    for (Fault& fault : program::set_written(own, chosen[i].value)) {
+      faults_.push_back(std::move(fault));
+    }
+  }
+}
+
+std::vector<Filter> Section::filters() const {
+  const toml::node* node = table_.get("where");
+  if (node == nullptr) return {};
+  const toml::table* where = node->as_table();
+  if (where == nullptr) {
+    refuse("'where' must be a table");
+    return {};
+  }
+  std::vector<Filter> filters;
+  for (const auto& [key, value] : *where) {
+    Filter filter{std::string(key.str()), {}};
+    if (const toml::array* list = value.as_array()) {
+      for (const toml::node& element : *list) filter.values.push_back(plain(element));
+    } else {
+      filter.values.push_back(plain(value));
+    }
+    filters.push_back(std::move(filter));
+  }
+  return filters;
+}
+
+std::vector<std::vector<Setting>> combinations(const std::vector<program::WrittenOption>& written) {
+  std::vector<std::vector<Setting>> all{{}};
+  for (const program::WrittenOption& option : written) {
+    std::vector<std::vector<Setting>> longer;
+    for (const auto& chosen : all) {
+      for (const std::string& value : option.values) {
+        longer.push_back(chosen);
+        longer.back().push_back({option.option->name, value});
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+}  // namespace seqloop::experiment
