@@ -49,10 +49,9 @@ DescribedFrame describe(Grab grab, const Frame& frame, Describer* describer,
   if (grab == Grab::unreadable) return {{}, frame.fault};
   if (!frame.descriptor.empty()) return {frame.descriptor, {}};
   if (describer == nullptr) return {{}, "nothing is there to describe pictures with"};
-  if (describer->describe(frame.image, buffer) == Description::failed) {
-    return {{}, describer->last_fault()};
-  }
-  return {buffer, {}};
+  const Description description = describer->describe(frame.image, buffer);
+  if (description == Description::failed) return {{}, describer->last_fault()};
+  return {buffer, {}, description == Description::blank};
 }
 
 }  // namespace seqloop

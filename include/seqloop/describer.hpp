@@ -10,8 +10,8 @@
 namespace seqloop {
 
 enum class Description : std::uint8_t {
-  good,   ///< a unit vector
-  blank,  ///< the features were all zero, so the descriptor is the zero vector (Algorithm 1)
+  good,   ///< a unit vector, or what the matcher's difference wants
+  blank,  ///< no feature in the picture: the zero vector (Algorithm 1), or what says the same
   failed  ///< the picture could not be described; `last_fault()` says why
 };
 
@@ -29,7 +29,8 @@ class Describer {
   [[nodiscard]] virtual std::size_t size() const noexcept = 0;
 
   /// @param image    any size; grey or BGR
-  /// @param descriptor [D], written: unit L2 or zero; left alone when the call fails
+  /// @param descriptor [D], written: unit L2 or zero, or as the describer says that its descriptors
+  ///   are compared; left alone when the call fails
   /// Errors: none thrown. Allocates: whatever the library behind it does.
   [[nodiscard]] virtual Description describe(const Image& image,
                                              std::span<float> descriptor) noexcept = 0;

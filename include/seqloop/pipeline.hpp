@@ -35,6 +35,7 @@ struct ProcessedFrame {
 struct DescribedFrame {
   std::span<const float> descriptor;  ///< [D]; empty when the frame cannot be read or described
   std::string_view fault;
+  bool blank = false;  ///< the describer found no feature in the picture
 };
 
 /// @param grab, frame what a source handed over, `end` excepted

@@ -1,11 +1,10 @@
 #include "opencv/builtin_describer.hpp"
 
 #include "opencv/detail/builtin_model.hpp"
-#include "opencv/dnn_describer.hpp"
 
 namespace seqloop::opencv {
 
-std::unique_ptr<Describer> make_builtin_describer() {
+std::unique_ptr<DnnDescriber> make_builtin_describer() {
   ModelSettings settings;
   settings.model = "built-in descriptor";
   return std::make_unique<DnnDescriber>(builtin_model(), settings);

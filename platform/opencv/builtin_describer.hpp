@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "seqloop/describer.hpp"
+#include "opencv/dnn_describer.hpp"
 
 namespace seqloop::opencv {
 
 /// The descriptor that needs no model file: oriented gradients, a fixed filter bank without
 /// training (made by tools/descriptor), which is compiled into the program. It sees grey only.
 /// Throws SetupError only when this OpenCV cannot read the model that was built in.
-[[nodiscard]] std::unique_ptr<Describer> make_builtin_describer();
+[[nodiscard]] std::unique_ptr<DnnDescriber> make_builtin_describer();
 
 }  // namespace seqloop::opencv

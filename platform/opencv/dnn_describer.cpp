@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "opencv/detail/guarded.hpp"
 #include "opencv/detail/model.hpp"
 #include "opencv/detail/one_line.hpp"
 #include "opencv/detail/picture_blob.hpp"
@@ -110,7 +111,7 @@ class DnnDescriber::Impl {
       : net_(model.net),
         layer_(std::move(layer)),
         blob_(layout),
-        size_of_noise_(layout.width, layout.height),
+        input_(layout.width, layout.height),
         gray_(layout.channels == 1) {
     net_.enableFusion(false);
     size_ = forward_noise(1).total();
@@ -132,13 +133,8 @@ class DnnDescriber::Impl {
            cv::norm(fused, plain) <= fusion_tolerance * scale;
   }
 
+  /// May throw.
   [[nodiscard]] Description describe(const Image& image, std::span<float> descriptor) {
-    if (image.data == nullptr || image.width <= 0 || image.height <= 0)
-      return fail("the picture is empty");
-    const std::size_t bytes_a_pixel = image.format == PixelFormat::gray8 ? 1 : 3;
-    if (image.stride < static_cast<std::size_t>(image.width) * bytes_a_pixel)
-      return fail("the picture's rows are shorter than the picture is wide");
-    if (descriptor.size() != size_) return fail("the descriptor has another length than the layer");
     const cv::Mat output = forward(image);
     if (output.total() != size_) return fail("the layer's output changed its size");
     const std::span<const float> features(output.ptr<float>(), size_);
@@ -155,8 +151,8 @@ class DnnDescriber::Impl {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] bool gray() const noexcept { return gray_; }
-  [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
-  void clear_fault() noexcept { fault_.clear(); }
+  [[nodiscard]] const cv::Size& input() const noexcept { return input_; }
+  [[nodiscard]] std::string& fault() noexcept { return fault_; }
 
   [[nodiscard]] std::size_t layers_run() {
     std::vector<double> ticks;
@@ -178,7 +174,7 @@ class DnnDescriber::Impl {
 
   /// The output for a picture of noise that depends on the seed.
   [[nodiscard]] cv::Mat forward_noise(std::uint64_t seed) {
-    cv::Mat noise(size_of_noise_, CV_8UC1);
+    cv::Mat noise(input_, CV_8UC1);
     cv::RNG(seed).fill(noise, cv::RNG::UNIFORM, 0, 256);
     return forward(view(noise));
   }
@@ -186,7 +182,7 @@ class DnnDescriber::Impl {
   cv::dnn::Net net_;
   std::string layer_;  ///< OpenCV's name
   PictureBlob blob_;
-  cv::Size size_of_noise_;
+  cv::Size input_;
   bool gray_;
   std::size_t size_ = 0;
   std::string fault_;
@@ -205,23 +201,17 @@ DnnDescriber::~DnnDescriber() = default;
 std::size_t DnnDescriber::size() const noexcept { return impl_->size(); }
 
 Description DnnDescriber::describe(const Image& image, std::span<float> descriptor) noexcept {
-  try {
-    impl_->clear_fault();
-    try {
-      return impl_->describe(image, descriptor);
-    } catch (const cv::Exception& error) {
-      return impl_->fail("OpenCV: " + one_line(error.err));
-    } catch (const std::exception& error) {
-      return impl_->fail(error.what());
-    }
-  } catch (...) {  // no memory left for the message
-    return Description::failed;
-  }
+  return guarded(impl_->fault(), image, descriptor, size(),
+                 [&] { return impl_->describe(image, descriptor); });
 }
 
 std::string_view DnnDescriber::last_fault() const noexcept { return impl_->fault(); }
 
 bool DnnDescriber::gray() const noexcept { return impl_->gray(); }
+
+int DnnDescriber::input_width() const noexcept { return impl_->input().width; }
+
+int DnnDescriber::input_height() const noexcept { return impl_->input().height; }
 
 std::size_t DnnDescriber::layers_run() const { return impl_->layers_run(); }
 

@@ -63,6 +63,10 @@ class DnnDescriber : public Describer {
   /// The net sees grey only, so grey pictures are enough.
   [[nodiscard]] bool gray() const noexcept;
 
+  /// Pixels of the pictures that the net sees.
+  [[nodiscard]] int input_width() const noexcept;
+  [[nodiscard]] int input_height() const noexcept;
+
   /// Layers that the last call computed (fused ones count as one).
   [[nodiscard]] std::size_t layers_run() const;
 

@@ -4,6 +4,7 @@
 
 #include "core/allocation_guard.hpp"
 #include "core/matcher.hpp"
+#include "seqloop/principal_components.hpp"
 
 namespace seqloop {
 namespace {
@@ -59,6 +60,17 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
       }
     }
   }
+}
+
+TEST_F(NoAllocation, InRemovingComponents) {
+  std::vector<std::uint8_t> pictures(10'000);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    pictures[i] = static_cast<std::uint8_t>(i * i * 31 >> 5U);
+  PrincipalComponents components(pictures, 1000, 5);
+  ASSERT_EQ(components.count(), 5U);
+  const AllocationGuard guard;
+  components.remove(std::span(pictures).first(1000), std::span(pictures).first(1000));
+  EXPECT_EQ(guard.count(), 0U);
 }
 
 }  // namespace

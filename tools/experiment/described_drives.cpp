@@ -8,8 +8,6 @@
 #include "experiment/fingerprint.hpp"
 #include "seqloop/build_info.hpp"
 #include "seqloop/describe_drive.hpp"
-#include "seqloop/interruption.hpp"
-#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::experiment {
@@ -111,15 +109,8 @@ void DescribedDrives::describe(const Wanted& wanted) const {
   const auto describer = open_describer(descriptor.describer, lent);
   const auto source = open(wanted.drive);
   files::NpyWriter out(file(wanted.drive, wanted.descriptor), describer->size());
-  const auto tell = [&](const std::string& line) {
-    program::say("{}: {}", wanted.drive, line);
-  };
-  const program::DescribedCount count =
-      program::describe_drive(*source, *describer, out, tell, [] { program::stop_if_interrupted(); });
-  if (count.unreadable == out.rows()) {
-    throw SetupError({wanted.drive, "none of its frames can be read"});
-  }
-  out.commit();
+  program::Progress silent;
+  program::describe_drive(wanted.drive, *source, *describer, out, silent);
 }
 
 }  // namespace seqloop::experiment

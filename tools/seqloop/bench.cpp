@@ -76,7 +76,20 @@ std::vector<float> random_unit(std::mt19937& random, std::size_t size) {
   return vector;
 }
 
-/// The built-in descriptor, and the model that is given beside it, from a 640x480 colour frame.
+/// Of what is asked for beside the built-in descriptor; empty when nothing is.
+std::string name_of(const DriveSettings& drive) {
+  const opencv::ModelSettings& model = drive.model;
+  std::string name = model.model.empty() ? drive.descriptor
+                                         : model.model.stem().string() +
+                                               (model.layer.empty() ? "" : ":" + model.layer);
+  if (drive.remove_components) {
+    if (name.empty()) name = "gradients";
+    name += fmt::format(" less {} components", *drive.remove_components);
+  }
+  return name;
+}
+
+/// The built-in descriptor, and what is asked for beside it, from a 640x480 colour frame.
 void time_describing(const BenchSettings& settings, std::vector<Contender>& all) {
   constexpr int width = 640;
   constexpr int height = 480;
@@ -84,12 +97,8 @@ void time_describing(const BenchSettings& settings, std::vector<Contender>& all)
   const Image image{pixels.data(), width, height, std::size_t{width} * 3, PixelFormat::bgr8};
   std::vector<std::pair<std::string, std::unique_ptr<Describer>>> describers;
   describers.emplace_back("seqloop-built-in", opencv::make_builtin_describer());
-  const opencv::ModelSettings& model = settings.drive.model;
-  if (!model.model.empty()) {
-    describers.emplace_back(
-        model.model.stem().string() + (model.layer.empty() ? "" : ":" + model.layer),
-        open_describer(settings.drive));
-  }
+  const std::string other = name_of(settings.drive);
+  if (!other.empty()) describers.emplace_back(other, open_describer(settings.drive));
   std::vector<Contender> contenders;
   std::vector<std::vector<float>> outputs;
   outputs.reserve(describers.size());
@@ -175,7 +184,7 @@ void bench(const BenchSettings& settings, Faults faults) {
 Verb bench_verb() {
   const auto settings = std::make_shared<BenchSettings>();
   Verb verb{"bench",
-            "Time describing (beside --model) and a step on this machine, on one thread",
+            "Time describing (beside --descriptor or --model) and a step here, on one thread",
             {},
             [settings](Faults faults) { bench(*settings, std::move(faults)); }};
   verb.options.flag("json", settings->json, "print JSON");

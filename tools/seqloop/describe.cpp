@@ -1,15 +1,12 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "files/npy_file.hpp"
-#include "seqloop/difference.hpp"
+#include "seqloop/describe_drive.hpp"
 #include "seqloop/drives.hpp"
 #include "seqloop/interruption.hpp"
 #include "seqloop/outputs.hpp"
-#include "seqloop/pipeline.hpp"
 #include "seqloop/progress.hpp"
 #include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
@@ -35,7 +32,9 @@ void describe(const DescribeSettings& settings, Faults faults) {
   } else {
     collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
   }
-  refuse_overwriting(faults, settings.out, {settings.source});
+  std::vector<std::filesystem::path> inputs = settings.drive.training;
+  inputs.push_back(settings.source);
+  refuse_overwriting(faults, settings.out, inputs);
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out D.npy"});
   } else {
@@ -44,35 +43,12 @@ void describe(const DescribeSettings& settings, Faults faults) {
   }
   refuse(std::move(faults));
 
-  std::size_t unreadable = 0;
-  std::size_t blank = 0;
-  std::vector<float> descriptor(describer->size());
   Progress progress("describing", source->frame_count());
-  Frame frame;
-  for (Grab grab = source->grab(frame); grab != Grab::end; grab = source->grab(frame)) {
-    stop_if_interrupted();
-    const auto [described, fault] = seqloop::describe(grab, frame, describer.get(), descriptor);
-    if (described.empty()) {
-      // A row of zeros keeps the rows in step with the frames.
-      std::ranges::fill(descriptor, 0.0F);
-      ++unreadable;
-      progress.tell(fmt::format("frame {}: {}", frame.index, fault));
-    } else if (squared_norm(described) == 0.0) {
-      ++blank;
-    }
-    out->append(descriptor);
-    progress.step();
-  }
-  progress.done();
-  tell_notes(settings.source, *source);
-  const std::size_t rows = out->rows();
-  if (rows == unreadable) {
-    throw SetupError({settings.source.string(), "none of its frames can be read"});
-  }
-  out->commit();
-  say("{} frames of {} values in {}", rows, descriptor.size(), settings.out.string());
-  if (unreadable > 0) say("{} unreadable frames are rows of zeros", unreadable);
-  if (blank > 0) say("{} blank frames, without any feature, are rows of zeros", blank);
+  const DescribedCount count =
+      describe_drive(settings.source.string(), *source, *describer, *out, progress);
+  say("{} frames of {} values in {}", out->rows(), describer->size(), settings.out.string());
+  if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
+  if (count.blank > 0) say("{} frames are blank, without any feature", count.blank);
 }
 
 }  // namespace
@@ -84,7 +60,8 @@ Verb describe_verb() {
         describe(*settings, std::move(faults));
       }};
   verb.options.path("source", settings->source, "image folder or video file");
-  verb.options.path("out", settings->out, "descriptors: float32 [N, D], unit L2, .npy");
+  verb.options.path("out", settings->out,
+                    "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
   add_drive_options(verb.options, settings->drive);
   return verb;
 }

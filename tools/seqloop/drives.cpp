@@ -1,73 +1,18 @@
 #include "seqloop/drives.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "files/descriptor_source.hpp"
-#include "opencv/builtin_describer.hpp"
 #include "opencv/source.hpp"
-#include "opencv/threads.hpp"
-#include "seqloop/config_file.hpp"
 #include "seqloop/difference.hpp"
+#include "seqloop/model_options.hpp"
 #include "seqloop/say.hpp"
-#include "seqloop/verb.hpp"
 
 namespace seqloop::program {
 namespace {
-
-void set_input_size(opencv::ModelSettings& model, std::string_view text) {
-  const std::size_t cross = text.find('x');
-  if (cross == std::string_view::npos) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not WIDTHxHEIGHT");
-  }
-  constexpr std::size_t most = 8192;
-  const std::size_t width = parse_count(text.substr(0, cross));
-  const std::size_t height = parse_count(text.substr(cross + 1));
-  if (width == 0 || height == 0 || width > most || height > most) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not between 1x1 and 8192x8192");
-  }
-  model.input_width = static_cast<int>(width);
-  model.input_height = static_cast<int>(height);
-}
-
-void set_mean(opencv::ModelSettings& model, std::string_view text) {
-  const std::vector<double> mean = parse_numbers(text, ',');
-  if (mean.size() != model.mean.size()) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not three numbers B,G,R");
-  }
-  std::ranges::transform(mean, model.mean.begin(),
-                         [](double value) { return static_cast<float>(value); });
-}
-
-/// What a model's own settings file may hold, too.
-OptionTable model_options(opencv::ModelSettings& model) {
-  OptionTable options;
-  options.path("config-model", model.config_model,
-               "second model file where the format has one, such as Caffe's prototxt");
-  options.text("layer", model.layer, "layer by its name in the model file [the last one]");
-  options.add({"input-size", ValueKind::size, "WxH in pixels [as the model says]",
-               [&model](std::string_view value) { set_input_size(model, value); }});
-  options.add({"mean", ValueKind::triple, "B,G,R to subtract [0,0,0]",
-               [&model](std::string_view value) { set_mean(model, value); }});
-  options.number("scale", model.scale, "factor after the mean is subtracted [1]");
-  options.flag("swap-rb", model.swap_rb, "the model wants red first");
-  return options;
-}
-
-/// MODEL.toml beside MODEL.onnx, or MODEL.onnx.toml.
-std::filesystem::path settings_beside(const std::filesystem::path& model) {
-  std::filesystem::path beside = model;
-  beside.replace_extension(".toml");
-  if (std::filesystem::exists(beside)) return beside;
-  beside = model;
-  beside += ".toml";
-  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
-}
 
 /// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
 void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
@@ -86,9 +31,22 @@ void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
   }
 }
 
+void set_training(std::vector<std::filesystem::path>& drives, std::string_view text) {
+  drives.clear();
+  while (true) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    if (end == 0) throw std::invalid_argument("a drive has no name");
+    drives.emplace_back(text.substr(0, end));
+    if (end == text.size()) return;
+    text.remove_prefix(end + 1);
+  }
+}
+
 }  // namespace
 
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
+  options.text("descriptor", settings.descriptor,
+               "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
   options.path("model", settings.model.model,
                "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]");
   const OptionTable model = model_options(settings.model);
@@ -99,6 +57,15 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
     };
     options.add(std::move(option));
   }
+  options.add({"training", ValueKind::text,
+               "drives to learn from, image folders or videos, with commas between",
+               [&settings](std::string_view value) { set_training(settings.training, value); }});
+  options.add({"words", ValueKind::count, "words: size of the vocabulary [500]",
+               [&settings](std::string_view value) { settings.words = parse_count(value); }});
+  options.add(
+      {"remove-components", ValueKind::count,
+       "Change Removal: principal components of the training drives to remove [0]",
+       [&settings](std::string_view value) { settings.remove_components = parse_count(value); }});
   options.add({"fps", ValueKind::number, "frames a second of an image folder [10]",
                [&settings](std::string_view value) {
                  settings.fps = parse_number(value);
@@ -106,35 +73,6 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                    throw std::invalid_argument("it must be between 0.001 and 1000000");
                  }
                }});
-}
-
-std::unique_ptr<Describer> open_describer(const DriveSettings& settings) {
-  if (settings.model.model.empty()) {
-    if (settings.model_flags_given.empty()) {
-      opencv::use_threads(1);
-      return opencv::make_builtin_describer();
-    }
-    Faults faults;
-    for (const std::string& name : settings.model_flags_given) {
-      faults.push_back({name, "it describes a model, but no model is given", "--model FILE"});
-    }
-    throw SetupError(std::move(faults));
-  }
-  opencv::ModelSettings model = settings.model;
-  const std::filesystem::path beside = settings_beside(model.model);
-  if (!beside.empty()) {
-    const OptionTable options = model_options(model);
-    std::vector<std::string> known;
-    for (const Option& option : options.options()) known.push_back(option.name);
-    const std::set<std::string> given(settings.model_flags_given.begin(),
-                                      settings.model_flags_given.end());
-    refuse(apply_config_file(beside, options, given, known));
-    if (!given.contains("config-model") && model.config_model.is_relative() &&
-        !model.config_model.empty()) {
-      model.config_model = beside.parent_path() / model.config_model;
-    }
-  }
-  return std::make_unique<opencv::DnnDescriber>(model);
 }
 
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,18 +18,35 @@ namespace seqloop::program {
 
 /// A drive to open, and what to describe its pictures with.
 struct DriveSettings {
-  opencv::ModelSettings model;  ///< empty path: the built-in descriptor
+  std::string descriptor;       ///< gradients, patches or words; empty: the model, or gradients
+  opencv::ModelSettings model;  ///< empty path: none; the input size goes for patches, too
   std::vector<std::string> model_flags_given;
+  std::vector<std::filesystem::path> training;   ///< drives to learn from
+  std::optional<std::size_t> words;              ///< of the vocabulary [500]
+  std::optional<std::size_t> remove_components;  ///< Change Removal [0, off]
   double fps = 10.0;
   Difference difference = Difference::euclidean;  ///< how described drives will be compared
 };
 
-/// Model and picture flags. @param settings lives as long as the table
+/// Flags that say how pictures are read and described. @param settings lives as long as the table
 void add_drive_options(OptionTable& options, DriveSettings& settings);
 
-/// Opens the model, with what the TOML file beside it says unless a flag says otherwise.
+/// Takes patches where they are what the difference compares and nobody says otherwise. Adds a fault
+/// for a descriptor that the difference cannot compare.
+void suit_descriptor(DriveSettings& settings, Difference difference, Faults& faults);
+
+/// Looks for what is wrong, without learning. Throws SetupError.
+void check_describer(const DriveSettings& settings, bool training_given);
+
+/// Makes what describes pictures: a model, with what the TOML file beside it says unless a flag
+/// says otherwise, or a descriptor by its name; what learns learns here, from `settings.training`.
 /// Throws SetupError.
 [[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings);
+
+/// The same, learning from drives that are open, which are read to their ends.
+/// @param training instead of `settings.training`; may be empty where nothing learns
+[[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings,
+                                                        std::span<FrameSource* const> training);
 
 /// Opens an image folder, a video or an `.npy` file. Throws SetupError.
 /// @param flag the flag that names the drive, for the message when it was not given

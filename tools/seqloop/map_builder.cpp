@@ -25,7 +25,7 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
     stop_if_interrupted();
-    const auto [descriptor, fault] = describe(grab, frame, describer, buffer);
+    const auto [descriptor, fault, _] = describe(grab, frame, describer, buffer);
     if (descriptor.empty()) {
       progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     } else {

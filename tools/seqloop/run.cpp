@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "files/output_file.hpp"
 #include "seqloop/drive_length.hpp"
@@ -72,7 +73,9 @@ std::size_t places_for(const RunSettings& settings, const FrameSource& drive) {
 
 Setup set_up(const RunSettings& settings, Faults faults) {
   Setup setup;
-  refuse_overwriting(faults, settings.out, {settings.source, settings.reference});
+  std::vector<std::filesystem::path> inputs = settings.drive.training;
+  inputs.insert(inputs.end(), {settings.source, settings.reference});
+  refuse_overwriting(faults, settings.out, inputs);
   collect(faults, [&] { setup.out = std::make_unique<files::OutputFile>(settings.out); });
   if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
   const bool closing = settings.reference.empty();
@@ -81,13 +84,15 @@ Setup set_up(const RunSettings& settings, Faults faults) {
     faults.push_back({"budget-total", "it must be above 0 and at most 1e9 milliseconds"});
   }
   const bool pictures = !is_described(settings.source);
+  DriveSettings drive = settings.drive;
+  drive.difference = setup.config.difference;
   if (pictures || !(closing || is_described(settings.reference))) {
-    collect(faults, [&] { setup.describer = open_describer(settings.drive); });
+    suit_descriptor(drive, setup.config.difference, faults);
+    collect(faults, [&] { setup.describer = open_describer(drive); });
   }
-  collect(faults, [&] { setup.source = open_drive(settings.source, "source", settings.drive); });
+  collect(faults, [&] { setup.source = open_drive(settings.source, "source", drive); });
   if (!closing) {
-    collect(faults,
-            [&] { setup.reference = open_drive(settings.reference, "reference", settings.drive); });
+    collect(faults, [&] { setup.reference = open_drive(settings.reference, "reference", drive); });
   }
   refuse(faults);
 
