@@ -101,7 +101,7 @@ TEST(BagOfWords, WeighsWordsByHowRareTheyAre) {
   }
   std::vector<std::string> distinct = all;
   std::ranges::sort(distinct);
-  distinct.erase(std::ranges::unique(distinct).begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   ASSERT_GT(distinct.size(), 10U);
   BagOfWords describer = trained(pictures, distinct.size());
   std::vector<double> wanted;  // of the second picture's words, in any order

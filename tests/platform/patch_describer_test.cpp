@@ -98,10 +98,11 @@ TEST(PatchDescriber, BringsAnyPictureToItsSizeInGrey) {
 
 // Bad input: sizes that are no patches, pictures that are none.
 TEST(PatchDescriber, RefusesWhatItCannotDescribe) {
-  for (const auto& [width, height] :
-       std::vector<std::pair<int, int>>{{0, 8}, {8, 0}, {-8, 8}, {60, 32}, {64, 30}, {8200, 8}}) {
-    const std::string fault = test::setup_error([&] { PatchDescriber(width, height); });
-    EXPECT_TRUE(test::says(fault, std::to_string(width) + "x" + std::to_string(height)));
+  for (const cv::Size size : {cv::Size(0, 8), cv::Size(8, 0), cv::Size(-8, 8), cv::Size(60, 32),
+                              cv::Size(64, 30), cv::Size(8200, 8)}) {
+    const std::string fault = test::setup_error([&] { PatchDescriber(size.width, size.height); });
+    const std::string name = std::to_string(size.width) + "x" + std::to_string(size.height);
+    EXPECT_TRUE(test::says(fault, name));
     EXPECT_TRUE(test::says(fault, "multiples of 8"));
   }
   PatchDescriber describer;

@@ -75,6 +75,14 @@ TEST(ReaderFuzz, Truths) {
   });
 }
 
+TEST(ReaderFuzz, Positions) {
+  fuzz("frame,latitude,longitude\n1,63.5,10.25\n2,-1e1,179.5\n", 4, [](const std::string& text) {
+    const auto positions = evaluation::Positions::from_csv(evaluation::CsvTable(text, "p.csv"));
+    EXPECT_GE(positions.places.size(), 1U);
+    return true;
+  });
+}
+
 TEST(ReaderFuzz, ConfigurationFiles) {
   program::MatcherSettings settings;
   program::OptionTable table;

@@ -1,5 +1,7 @@
 #include "evaluation/csv.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <utility>
@@ -59,6 +61,14 @@ CsvTable CsvTable::read(const std::filesystem::path& file) {
   return {files::read_text(file), file.string()};
 }
 
+std::string CsvTable::where(std::size_t row) const {
+  return name_ + ":" + std::to_string(line_numbers_[row]);
+}
+
+bool CsvTable::has(std::string_view header) const noexcept {
+  return std::ranges::find(header_, header) != header_.end();
+}
+
 std::size_t CsvTable::column(std::string_view header) const {
   const auto found = std::ranges::find(header_, header);
   if (found == header_.end()) {
@@ -82,10 +92,18 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   return value;
 }
 
+double CsvTable::number_within(std::size_t row, std::size_t column, double least,
+                               double most) const {
+  const double value = number(row, column);
+  if (!(value >= least && value <= most)) {
+    refuse(row, column, fmt::format("a number from {} to {}", least, most));
+  }
+  return value;
+}
+
 void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view wanted) const {
-  throw SetupError({name_ + ":" + std::to_string(line_numbers_[row]),
-                    "'" + lines_[row][column] + "' under '" + header_[column] + "' is not " +
-                        std::string(wanted)});
+  throw SetupError({where(row), "'" + lines_[row][column] + "' under '" + header_[column] +
+                                    "' is not " + std::string(wanted)});
 }
 
 }  // namespace seqloop::evaluation

@@ -18,7 +18,14 @@ class CsvTable {
   /// Throws SetupError when the file cannot be read, and as above.
   static CsvTable read(const std::filesystem::path& file);
 
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }
+
+  /// @return `NAME:LINE`, for messages
+  [[nodiscard]] std::string where(std::size_t row) const;
+
+  /// Whether a column has this header.
+  [[nodiscard]] bool has(std::string_view header) const noexcept;
 
   /// @return index of the column with this header. Throws SetupError: there is none.
   [[nodiscard]] std::size_t column(std::string_view header) const;
@@ -26,6 +33,8 @@ class CsvTable {
   /// Throw SetupError, with the line, for a cell that is no such number.
   [[nodiscard]] std::uint64_t whole(std::size_t row, std::size_t column) const;
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;  ///< nan and inf too
+  [[nodiscard]] double number_within(std::size_t row, std::size_t column, double least,
+                                     double most) const;
 
  private:
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view wanted) const;

@@ -1,10 +1,39 @@
 #include "evaluation/truth.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
+namespace {
+
+double northing(const Positions::Place& place) { return place.point.back(); }
+
+bool within(const Positions::Place& a, const Positions::Place& b, double most) {
+  double squares = 0.0;
+  for (std::size_t axis = 0; axis < a.point.size(); ++axis) {
+    const double apart = a.point[axis] - b.point[axis];
+    squares += apart * apart;
+  }
+  return squares <= most * most;
+}
+
+/// Frames of the places that are near enough, ascending.
+/// @param sorted by northing
+std::vector<std::uint64_t> frames_near(const std::vector<Positions::Place>& sorted,
+                                       const Positions::Place& here, double most) {
+  std::vector<std::uint64_t> frames;
+  auto place = std::ranges::lower_bound(sorted, northing(here) - most, {}, northing);
+  for (; place != sorted.end() && northing(*place) <= northing(here) + most; ++place) {
+    if (within(*place, here, most)) frames.push_back(place->frame);
+  }
+  std::ranges::sort(frames);
+  return frames;
+}
+
+}  // namespace
 
 Truth Truth::identity(std::uint64_t frames) {
   Truth truth;
@@ -15,20 +44,69 @@ Truth Truth::identity(std::uint64_t frames) {
 Truth Truth::from_csv(const CsvTable& table) {
   const std::size_t query = table.column("query");
   const std::size_t reference = table.column("reference");
+  const bool own_tolerances = table.has("tolerance");
   Truth truth;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    truth.places_[table.whole(row, query)].push_back(table.whole(row, reference));
+    const std::uint64_t place = table.whole(row, reference);
+    Run run{place, place};
+    if (own_tolerances) run.tolerance = table.whole(row, table.column("tolerance"));
+    truth.places_[table.whole(row, query)].push_back(run);
   }
   if (truth.places_.empty()) throw SetupError(Fault{"truth", "it has no rows"});
   return truth;
 }
 
+Truth Truth::from_positions(Positions reference, const Positions& query, double radius_m) {
+  if (!(radius_m > 0.0 && std::isfinite(radius_m))) {
+    throw SetupError(Fault{"radius", "it must be above 0 metres"});
+  }
+  if (reference.on_earth != query.on_earth) {
+    throw SetupError({"reference-positions, query-positions",
+                      "one has x,y and the other latitude,longitude", "give both alike"});
+  }
+  const double most = query.on_earth ? chord(radius_m) : radius_m;
+  std::ranges::sort(reference.places, {}, northing);
+  Truth truth;
+  for (const Positions::Place& here : query.places) {
+    std::vector<Run> runs;
+    for (const std::uint64_t frame : frames_near(reference.places, here, most)) {
+      if (!runs.empty() && runs.back().last + 1 == frame) {
+        runs.back().last = frame;
+      } else {
+        runs.push_back({frame, frame, 0});
+      }
+    }
+    if (!runs.empty()) truth.places_[here.frame] = std::move(runs);
+  }
+  if (truth.places_.empty()) {
+    throw SetupError({"radius", "no query frame is that near to a reference frame",
+                      "widen it, or check that both drives use the same coordinates"});
+  }
+  return truth;
+}
+
+std::uint64_t Truth::queries_reach() const noexcept {
+  if (identity_frames_) return *identity_frames_;
+  return places_.empty() ? 0 : places_.rbegin()->first + 1;
+}
+
+std::uint64_t Truth::places_reach() const noexcept {
+  if (identity_frames_) return *identity_frames_;
+  std::uint64_t reach = 0;
+  for (const auto& [query, runs] : places_) {
+    for (const Run& run : runs) reach = std::max(reach, run.last + 1);
+  }
+  return reach;
+}
+
 bool Truth::right(std::uint64_t query, std::uint64_t match,
                   std::uint64_t tolerance) const noexcept {
-  const auto near = [&](std::uint64_t place) {
-    return std::max(place, match) - std::min(place, match) <= tolerance;
+  const auto near = [&](const Run& run) {
+    const std::uint64_t allowed = run.tolerance.value_or(tolerance);
+    if (match < run.first) return run.first - match <= allowed;
+    return match <= run.last || match - run.last <= allowed;
   };
-  if (identity_frames_) return query < *identity_frames_ && near(query);
+  if (identity_frames_) return query < *identity_frames_ && near({query, query});
   const auto found = places_.find(query);
   return found != places_.end() && std::ranges::any_of(found->second, near);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluation/csv.hpp"
+#include "evaluation/positions.hpp"
 
 namespace seqloop::evaluation {
 
@@ -15,22 +16,44 @@ class Truth {
   /// Frame i shows place i, for i in [0, frames).
   static Truth identity(std::uint64_t frames);
 
-  /// Rows `query,reference`; several rows of one query are several right answers.
+  /// Rows `query,reference`; several rows of one query are several right answers. A third column
+  /// `tolerance`, in frames, holds for its own row instead of the tolerance that `right` is asked
+  /// with.
   /// Throws SetupError as CsvTable does, and without rows.
   static Truth from_csv(const CsvTable& table);
+
+  /// A query frame shows every reference frame that was at most the radius away. There is no
+  /// tolerance in frames beside that.
+  /// @param radius_m metres, > 0: over the ground, along a great circle, where positions are on
+  /// earth
+  /// Work: sorts both; a distance for each query and each reference in its band of the radius.
+  /// Throws SetupError: the radius; one drive is on earth and the other on a plan; no query frame
+  /// is within the radius of a reference frame.
+  static Truth from_positions(Positions reference, const Positions& query, double radius_m);
 
   /// Frames that have a place.
   [[nodiscard]] std::uint64_t frames() const noexcept {
     return identity_frames_.value_or(places_.size());
   }
 
+  /// One more than the highest frame that it names, of the queries and of the references.
+  [[nodiscard]] std::uint64_t queries_reach() const noexcept;
+  [[nodiscard]] std::uint64_t places_reach() const noexcept;
+
   /// @param tolerance frames
   [[nodiscard]] bool right(std::uint64_t query, std::uint64_t match,
                            std::uint64_t tolerance) const noexcept;
 
  private:
+  /// Neighbouring reference frames that are all right.
+  struct Run {
+    std::uint64_t first;
+    std::uint64_t last;
+    std::optional<std::uint64_t> tolerance = {};  ///< frames; the asked one when it has none
+  };
+
   std::optional<std::uint64_t> identity_frames_;  // set: frame i shows place i
-  std::map<std::uint64_t, std::vector<std::uint64_t>> places_;
+  std::map<std::uint64_t, std::vector<Run>> places_;
 };
 
 }  // namespace seqloop::evaluation

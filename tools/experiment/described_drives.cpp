@@ -42,8 +42,7 @@ void DescribedDrives::check(Faults& faults) {
   for (const DriveSpec& drive : experiment_.drives) {
     collect_at(drive.where, faults, [&] {
       lengths_[drive.name] = open(drive.name)->frame_count();
-      states[drive.name] =
-          text_of(drive.settings) + drive.source.string() + state_of(drive.source);
+      states[drive.name] = text_of(drive.settings) + drive.source.string() + state_of(drive.source);
     });
   }
   std::set<Wanted> wanted;
@@ -80,7 +79,8 @@ std::vector<Job> DescribedDrives::jobs() const {
     if (std::filesystem::exists(file)) continue;
     const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
     std::string name = wanted.drive + " by " + descriptor.name;
-    for (const Setting& setting : descriptor.swept) name += " " + setting.name + " " + setting.value;
+    for (const Setting& setting : descriptor.swept)
+      name += " " + setting.name + " " + setting.value;
     // A net takes some ten times as long as what is built in.
     const double a_frame = descriptor.describer.model.model.empty() ? 1.0 : 10.0;
     const double frames = static_cast<double>(length(wanted.drive).value_or(1000));

@@ -41,13 +41,13 @@ class Reader {
     each(root, "descriptor", [&](const Section& section) { read_descriptor(section); });
     each(root, "pair", [&](const Section& section) { read_pair(section); });
     each(root, "method", [&](const Section& section) { read_method(section); });
-    each(root, "figure", [&](const Section& section) {
-      experiment_.figures.push_back(read_figure(section));
-    });
+    each(root, "figure",
+         [&](const Section& section) { experiment_.figures.push_back(read_figure(section)); });
     each(root, "table",
          [&](const Section& section) { experiment_.tables.push_back(read_table(section)); });
     if (experiment_.runs.empty() && faults_.empty()) {
-      faults_.push_back({file_, "there is nothing to run in it", "add a [[pair]] and a [[method]]"});
+      faults_.push_back(
+          {file_, "there is nothing to run in it", "add a [[pair]] and a [[method]]"});
     }
     program::refuse(std::move(faults_));
     return std::move(experiment_);
@@ -146,7 +146,7 @@ class Reader {
     options.number("dark-below", rule.dark_below, "");
     options.number("standing-below", rule.standing_below, "");
     pair.settings = section.set_all(options, {"name", "reference", "query"});
-    find(pair.truth.file);
+    if (!by_identity(pair.truth)) find(pair.truth.file);
     find(pair.truth.reference_positions);
     find(pair.truth.query_positions);
     if (rule.dark_below > 0.0 || rule.standing_below > 0.0) pair.leave_out = rule;
@@ -157,9 +157,9 @@ class Reader {
   static void check_pair(const Section& section, const PairSpec& pair) {
     const bool closing = !section.has("reference");
     if (closing && by_identity(pair.truth)) {
-      section.refuse("pair '" + pair.name +
-                         "' closes loops within a drive, where no frame is its own truth",
-                     "give a truth = \"FILE.csv\", or a reference drive");
+      section.refuse(
+          "pair '" + pair.name + "' closes loops within a drive, where no frame is its own truth",
+          "give a truth = \"FILE.csv\", or a reference drive");
     }
     if (pair.leave_out && (closing || !by_identity(pair.truth))) {
       section.refuse("pair '" + pair.name +
@@ -215,6 +215,10 @@ class Reader {
         if (!has(pairs, pair.name)) continue;
         const Use use = pair.reference.empty() ? Use::close_loops : Use::localise;
         RunSpec run{method, d, p, resolve(matcher, use, faults), chosen};
+        for (Setting& setting : run.settings) {
+          // In the report a method is what the file calls it.
+          if (setting.name == "method") setting.name = "algorithm";
+        }
         run.settings.insert(run.settings.end(), descriptor.swept.begin(), descriptor.swept.end());
         experiment_.runs.push_back(std::move(run));
       }

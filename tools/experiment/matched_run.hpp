@@ -21,8 +21,8 @@ struct MatchedRun {
   std::vector<evaluation::Answer> answers;
   double distances = 0.0;  ///< a frame, mean
   std::uint64_t most_distances = 0;
-  double candidates = 0.0;  ///< a frame that was searched, mean
-  double seconds = 0.0;     ///< of all steps
+  double candidates = 0.0;               ///< a frame that was searched, mean
+  double seconds = 0.0;                  ///< of all steps
   std::vector<std::uint8_t> matrix_png;  ///< empty unless asked for
 };
 

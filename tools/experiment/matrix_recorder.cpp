@@ -46,8 +46,7 @@ std::vector<std::uint8_t> MatrixRecorder::png() const {
       const float difference = column[static_cast<std::size_t>(y)];
       if (difference < 0.0F) continue;
       const float share = std::clamp((difference - low) / (high - low), 0.0F, 1.0F);
-      picture.at<std::uint8_t>(y, x) =
-          cv::saturate_cast<std::uint8_t>(share * lightest);
+      picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(share * lightest);
     }
   }
   std::vector<std::uint8_t> bytes;

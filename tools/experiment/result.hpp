@@ -27,7 +27,7 @@ struct Result {
   std::uint64_t queries = 0;      ///< frames matched
   std::uint64_t frames = 0;       ///< queries that have a truth
   std::uint64_t descriptor_size = 0;
-  evaluation::Measures measures;
+  evaluation::Measures measures{};
   double distances = 0.0;            ///< descriptor distances a frame, mean
   std::uint64_t most_distances = 0;  ///< of one frame
   double candidates = 0.0;           ///< rows scored a frame, mean

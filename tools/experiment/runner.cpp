@@ -43,8 +43,9 @@ class Runner {
     drives_.check(faults);
     for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
       const PairSpec& spec = experiment_.pairs[pair];
-      check_lengths(pair, {drives_.length(spec.reference.empty() ? spec.query : spec.reference),
-                           drives_.length(spec.query)},
+      check_lengths(pair,
+                    {drives_.length(spec.reference.empty() ? spec.query : spec.reference),
+                     drives_.length(spec.query)},
                     faults);
     }
     program::refuse(std::move(faults));
@@ -60,8 +61,13 @@ class Runner {
   }
 
   [[nodiscard]] Report report(std::size_t threads) const {
-    Report report{experiment_.title, experiment_.text, conditions(threads), {},
-                  experiment_.figures, experiment_.tables, {}};
+    Report report{experiment_.title,
+                  experiment_.text,
+                  conditions(threads),
+                  {},
+                  experiment_.figures,
+                  experiment_.tables,
+                  {}};
     for (const RunSpec& run : experiment_.runs) {
       report.results.push_back(kept_result(file(run, "json")).value());
       if (!shown_as_matrix(run)) continue;
@@ -112,14 +118,16 @@ class Runner {
     for (const RunSpec& run : experiment_.runs) {
       if (kept_result(file(run, "json"))) continue;
       const PairSpec& pair = experiment_.pairs[run.pair];
-      std::string name = pair.name + ": " + run.method;
+      std::string name = fmt::format("{}: {}, {}", pair.name, run.method,
+                                     experiment_.descriptors[run.descriptor].name);
       for (const Setting& setting : run.settings) {
-        if (setting.name != "method") name += " " + setting.name + " " + setting.value;
+        const bool number = setting.value.find_first_not_of("0123456789.") == std::string::npos;
+        if (number) name += fmt::format(", {} {}", setting.name, setting.value);
       }
       // What a run costs is mostly what it reads: all places, or ranges of them.
       const double share = run.config.candidates == Candidates::all ? 1.0 : 0.1;
-      const auto bytes = static_cast<double>(
-          std::filesystem::file_size(drives_.file(pair.query, run.descriptor)));
+      const auto bytes =
+          static_cast<double>(std::filesystem::file_size(drives_.file(pair.query, run.descriptor)));
       jobs.push_back({name, share * bytes * bytes, [this, &run] { match(run); }});
     }
     return jobs;
@@ -136,12 +144,17 @@ class Runner {
     const evaluation::Truth truth = pair_truth(pair, {places, queries}, faults);
     program::refuse(std::move(faults));
 
-    Result result{pair.name, run.method, experiment_.descriptors[run.descriptor].name,
-                  run.settings, places, queries, truth.frames(), described.query.columns};
+    Result result{pair.name,
+                  run.method,
+                  experiment_.descriptors[run.descriptor].name,
+                  run.settings,
+                  places,
+                  queries,
+                  truth.frames(),
+                  described.query.columns};
     const MatchedRun matched = match_pair(run.config, std::move(described),
                                           experiment_.threshold_on, shown_as_matrix(run));
-    result.measures =
-        measure(matched.answers, truth, pair.truth.tolerance, truth.frames());
+    result.measures = measure(matched.answers, truth, pair.truth.tolerance, truth.frames());
     result.distances = matched.distances;
     result.most_distances = matched.most_distances;
     result.candidates = matched.candidates;
@@ -162,7 +175,8 @@ class Runner {
       const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
       if (!kept) return rows;
       for (std::size_t i = 0; i < kept->frames.size(); ++i) {
-        std::ranges::copy(rows.row(kept->frames[i]), rows.values.begin() + static_cast<std::ptrdiff_t>(i * rows.columns));
+        std::ranges::copy(rows.row(kept->frames[i]),
+                          rows.values.begin() + static_cast<std::ptrdiff_t>(i * rows.columns));
       }
       rows.rows = kept->frames.size();
       rows.values.resize(rows.rows * rows.columns);
@@ -188,9 +202,9 @@ class Runner {
                        fingerprint(from), extension);
   }
 
-  /// The first exhaustive run of each method, pair and descriptor.
+  /// The first exhaustive run of each method, pair and descriptor that compares sequences.
   [[nodiscard]] bool shown_as_matrix(const RunSpec& run) const {
-    if (run.config.candidates != Candidates::all) return false;
+    if (run.config.candidates != Candidates::all || run.config.sequence_length == 0) return false;
     const auto same = [&](const RunSpec& other) {
       return std::tie(other.method, other.pair) == std::tie(run.method, run.pair) &&
              experiment_.descriptors[other.descriptor].name ==
@@ -200,14 +214,14 @@ class Runner {
   }
 
   [[nodiscard]] std::vector<Setting> conditions(std::size_t threads) const {
-    std::vector<Setting> all{{"program and machine", program::condition_line()},
-                             {"matched", experiment_.timed || threads == 1
-                                             ? "one run at a time, on one core"
-                                             : fmt::format("{} runs at once, one core each: "
-                                                           "seconds are not comparable",
-                                                           threads)},
-                             {"written", fmt::format("{:%Y-%m-%d %H:%M} UTC",
-                                                     fmt::gmtime(std::time(nullptr)))}};
+    std::vector<Setting> all{
+        {"program and machine", program::condition_line()},
+        {"matched", experiment_.timed || threads == 1
+                        ? "one run at a time, on one core"
+                        : fmt::format("{} runs at once, one core each: "
+                                      "seconds are not comparable",
+                                      threads)},
+        {"written", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};
     for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
       if (!kept_frames_[i]) continue;
       all.push_back({experiment_.pairs[i].name,

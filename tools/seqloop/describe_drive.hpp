@@ -17,7 +17,8 @@ struct DescribedCount {
 
 /// Writes the descriptor of every frame of a drive, one row each, and commits.
 /// @param name of the drive, for messages
-/// Throws SetupError when no frame can be read, files::IoError, and when the program is interrupted.
+/// Throws SetupError when no frame can be read, files::IoError, and when the program is
+/// interrupted.
 DescribedCount describe_drive(const std::string& name, FrameSource& source, Describer& describer,
                               files::NpyWriter& out, Progress& progress);
 

@@ -31,8 +31,8 @@ struct DriveSettings {
 /// Flags that say how pictures are read and described. @param settings lives as long as the table
 void add_drive_options(OptionTable& options, DriveSettings& settings);
 
-/// Takes patches where they are what the difference compares and nobody says otherwise. Adds a fault
-/// for a descriptor that the difference cannot compare.
+/// Takes patches where they are what the difference compares and nobody says otherwise. Adds a
+/// fault for a descriptor that the difference cannot compare.
 void suit_descriptor(DriveSettings& settings, Difference difference, Faults& faults);
 
 /// Looks for what is wrong, without learning. Throws SetupError.

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "evaluation/measures.hpp"
+#include "experiment/runner.hpp"
+#include "seqloop/interruption.hpp"
+#include "seqloop/say.hpp"
+#include "seqloop/truth_settings.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
@@ -13,11 +18,14 @@ namespace {
 
 struct EvalSettings {
   std::filesystem::path matches;
-  std::string truth = "identity";
-  std::size_t tolerance = 2;
+  TruthSettings truth;
   std::size_t frames = 0;
   evaluation::ThresholdOn threshold_on = evaluation::ThresholdOn::uniqueness;
   bool json = false;
+  std::filesystem::path experiment;
+  std::filesystem::path out;
+  std::filesystem::path data;
+  std::size_t jobs = 0;  ///< 0: as many as there are cores
 };
 
 evaluation::ThresholdOn parse_threshold(std::string_view text) {
@@ -35,10 +43,8 @@ std::uint64_t identity_frames(const EvalSettings& settings,
   return frames;
 }
 
-void eval(const EvalSettings& settings, Faults faults) {
+void eval_matches(const EvalSettings& settings, Faults faults) {
   std::vector<evaluation::Answer> answers;
-  evaluation::Truth truth;
-  const bool identity = settings.truth == "identity";
   if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
   if (!settings.matches.empty()) {
     collect(faults, [&] {
@@ -46,22 +52,19 @@ void eval(const EvalSettings& settings, Faults faults) {
                                          settings.threshold_on);
     });
   }
-  if (!identity) {
-    collect(faults, [&] {
-      truth = evaluation::Truth::from_csv(evaluation::CsvTable::read(settings.truth));
-    });
-  }
+  evaluation::Truth truth = read_truth(settings.truth, faults);
+  const bool identity = by_identity(settings.truth);
   if (!identity && settings.frames > 0 && settings.frames < truth.frames()) {
     faults.push_back(
         {"frames",
-         fmt::format("{} is fewer than the truth file has, {}", settings.frames, truth.frames()),
+         fmt::format("{} is fewer than have a truth, {}", settings.frames, truth.frames()),
          "leave --frames out"});
   }
   refuse(std::move(faults));
   if (identity) truth = evaluation::Truth::identity(identity_frames(settings, answers));
 
   const std::uint64_t frames = settings.frames > 0 ? settings.frames : truth.frames();
-  const evaluation::Measures measures = measure(answers, truth, settings.tolerance, frames);
+  const evaluation::Measures measures = measure(answers, truth, settings.truth.tolerance, frames);
   if (settings.json) {
     const nlohmann::ordered_json json{
         {"frames", frames},
@@ -75,23 +78,47 @@ void eval(const EvalSettings& settings, Faults faults) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {} frames)\n",
-             frames, measures.answered, measures.correct, settings.tolerance);
+  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
+             measures.answered, measures.correct, how_near(settings.truth));
   fmt::print("{:>8.3f} precision\n{:>8.3f} recall\n", measures.precision, measures.recall);
   fmt::print("{:>8.3f} recall at 100 % precision\n{:>8.3f} area under the curve\n",
              measures.recall_at_100_precision, measures.area_under_curve);
+}
+
+/// What belongs to match lists only, and what to experiments only.
+void eval(const EvalSettings& settings, Faults faults) {
+  if (settings.experiment.empty()) {
+    for (const auto& [flag, path] : {std::pair{"out", &settings.out}, {"data", &settings.data}}) {
+      if (!path->empty())
+        faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
+    }
+    eval_matches(settings, std::move(faults));
+    return;
+  }
+  take_interruptions();
+  if (!settings.matches.empty()) {
+    faults.push_back({"matches", "an experiment makes its own", "leave out one of the two"});
+  }
+  if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
+  experiment::Experiment experiment;
+  collect(faults,
+          [&] { experiment = experiment::read_experiment(settings.experiment, settings.data); });
+  refuse(std::move(faults));
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  run_experiment(experiment, settings.out, settings.jobs > 0 ? settings.jobs : cores);
+  say("the report is {}", (settings.out / "index.html").string());
 }
 
 }  // namespace
 
 Verb eval_verb() {
   const auto settings = std::make_shared<EvalSettings>();
-  Verb verb{"eval", "Compare a match list with the truth", {}, [settings](Faults faults) {
-              eval(*settings, std::move(faults));
-            }};
+  Verb verb{"eval",
+            "Compare a match list with the truth, or run a whole experiment",
+            {},
+            [settings](Faults faults) { eval(*settings, std::move(faults)); }};
   verb.options.path("matches", settings->matches, "match list (CSV), as `match` writes it");
-  verb.options.text("truth", settings->truth, "identity, or a CSV file query,reference [identity]");
-  verb.options.count("tolerance", settings->tolerance, "frames by which a match may be off [2]");
+  add_truth_options(verb.options, settings->truth);
   verb.options.add(
       {"threshold-on", ValueKind::text, "what the curve sweeps: uniqueness or score [uniqueness]",
        [settings](std::string_view value) { settings->threshold_on = parse_threshold(value); }});
@@ -99,6 +126,12 @@ Verb eval_verb() {
       "frames", settings->frames,
       "queries that have a truth [as the truth file says, or as far as the matches reach]");
   verb.options.flag("json", settings->json, "print JSON");
+  verb.options.path("experiment", settings->experiment,
+                    "methods x parameters x drives to run, TOML; goes on where it was interrupted");
+  verb.options.path("out", settings->out, "experiment: folder for the report, and what it keeps");
+  verb.options.path("data", settings->data,
+                    "experiment: where its relative paths start [as the file says]");
+  verb.options.count("jobs", settings->jobs, "experiment: runs at once [one a core]");
   return verb;
 }
 

@@ -17,8 +17,8 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
-void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
-              const MatcherConfig& config, Progress& progress) {
+void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
+              Progress& progress) {
   std::vector<float> buffer(map.descriptor_size());
   std::vector<float> last(map.descriptor_size(), 0.0F);
   std::size_t readable = 0;

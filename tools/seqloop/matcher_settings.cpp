@@ -72,11 +72,10 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "frames after which statistics have mostly moved on [100]");
   options.number("max-uniqueness", config.max_uniqueness,
                  "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
-  options.add({"difference", ValueKind::text,
-               "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
-               [&settings](std::string_view value) {
-                 settings.difference = parse_difference(value);
-               }});
+  options.add(
+      {"difference", ValueKind::text,
+       "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
+       [&settings](std::string_view value) { settings.difference = parse_difference(value); }});
   options.add({"enhance", ValueKind::on_off,
                "enhance differences by the contrast with the rows around [off; on for seqslam]",
                [&settings](std::string_view value) { settings.enhance = parse_on_off(value); }});

@@ -15,8 +15,8 @@ struct MatcherSettings {
   std::string method;
   bool paper = false;
   std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says
-  std::optional<bool> standardise;  ///< on unless --paper or SeqSLAM, when nobody says
-  std::optional<bool> enhance;      ///< on for SeqSLAM alone, when nobody says
+  std::optional<bool> standardise;       ///< on unless --paper or SeqSLAM, when nobody says
+  std::optional<bool> enhance;           ///< on for SeqSLAM alone, when nobody says
   std::string arithmetic = "float";
 };
 

@@ -97,7 +97,8 @@ class Reader {
   void read(const toml::table& table, const std::string& prefix) {
     std::vector<std::pair<const toml::node*, std::string>> in_order;
     for (const auto& [key, node] : table) in_order.emplace_back(&node, prefix + std::string(key));
-    std::ranges::sort(in_order, [](const auto& a, const auto& b) { return earlier(a.first, b.first); });
+    std::ranges::sort(in_order,
+                      [](const auto& a, const auto& b) { return earlier(a.first, b.first); });
     for (const auto& [node, name] : in_order) {
       if (std::ranges::find(others_.ignored, name) != others_.ignored.end()) continue;
       if (const toml::table* inner = node->as_table()) {
@@ -128,7 +129,8 @@ class Reader {
     } else {
       add(found, name, node);
     }
-    if (list != nullptr && list->empty()) faults_.push_back({found.where, "'" + name + "' is empty"});
+    if (list != nullptr && list->empty())
+      faults_.push_back({found.where, "'" + name + "' is empty"});
     if (!found.values.empty()) written.push_back(std::move(found));
   }
 

@@ -24,6 +24,7 @@ struct Verb {
 [[nodiscard]] Verb eval_verb();
 [[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb bench_verb();
+[[nodiscard]] Verb stills_verb();
 
 /// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
 template <class Part>

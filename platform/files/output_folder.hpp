@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "files/output_file.hpp"
+
+namespace seqloop::files {
+
+/// A folder that appears under its name only when it is complete.
+///
+/// Until `commit` its files lie in `.NAME.partial-PID` beside it; the destructor removes that
+/// folder if there was no commit, and a process that is killed leaves nothing else behind. A
+/// symbolic link to an empty folder is followed.
+class OutputFolder {
+ public:
+  /// Throws SetupError: there is something under that name already other than an empty folder, the
+  /// folder around it is missing or may not be written.
+  explicit OutputFolder(std::filesystem::path path);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  OutputFolder(OutputFolder&&) = delete;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+  ~OutputFolder();
+
+  /// Makes a file in the folder, or replaces it. Throws IoError.
+  void write(const std::string& name, std::span<const std::byte> bytes);
+  void write(const std::string& name, std::string_view text) {
+    write(name, std::as_bytes(std::span(text)));
+  }
+
+  /// Everything to the disk, then under its own name. The last call. Throws IoError.
+  void commit();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  void make_beside(const std::string& shown);
+
+  std::filesystem::path path_;
+  std::filesystem::path partial_;  ///< empty after the commit
+};
+
+}  // namespace seqloop::files

@@ -1,0 +1,73 @@
+// Truth by where frames were, through the real binary.
+#include <nlohmann/json.hpp>
+
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+class EvalByPositions : public test::Program {
+ protected:
+  void SetUp() override {
+    folder_.write("m.csv",
+                  "query,match,score,uniqueness\n0,0,.5,.1\n1,5,.5,.2\n2,2,.5,.3\n3,3,.5,.4\n");
+    folder_.write("r.csv", "frame,x,y\n0,0,0\n1,10,0\n2,20,0\n3,30,0\n5,13,9\n");
+    folder_.write("q.csv", "frame,x,y\n0,1,0\n1,13,1\n2,29,0\n3,30,-8\n4,31,0\n9,500,0\n");
+  }
+
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& words) const {
+    SCOPED_TRACE(arguments);
+    const test::Outcome outcome = run("eval --matches m.csv " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    for (const std::string& word : words) {
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << "no '" << word << "' in:\n"
+                                                           << outcome.err;
+    }
+  }
+
+  const std::string both_ = "--reference-positions r.csv --query-positions q.csv ";
+};
+
+TEST_F(EvalByPositions, CountsWhatLiesWithinTheRadius) {
+  const auto outcome = run("eval --json --matches m.csv --radius 8 " + both_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["frames"], 5) << "query 9 is far from all";
+  EXPECT_EQ(json["answered"], 4);
+  EXPECT_EQ(json["correct"], 3) << "frame 2 is 9 m off; one frame of tolerance would let it pass";
+  EXPECT_DOUBLE_EQ(json["recall"], 0.6);
+  EXPECT_DOUBLE_EQ(json["recall_at_100_precision"], 0.4);
+  const auto words = run("eval --matches m.csv --radius 9 " + both_);
+  EXPECT_NE(words.out.find("4 of them right (within 9 metres)"), std::string::npos) << words.out;
+  const auto wide = nlohmann::json::parse(run("eval --json --matches m.csv " + both_).out);
+  EXPECT_EQ(wide["correct"], 4) << "25 m where no radius is given";
+}
+
+TEST_F(EvalByPositions, OneRowsToleranceThroughTheFlags) {
+  folder_.write("t.csv", "query,reference,tolerance\n0,1,1\n1,4,0\n2,4,9\n");
+  const auto json =
+      nlohmann::json::parse(run("eval --json --matches m.csv --truth t.csv --tolerance 5").out);
+  EXPECT_EQ(json["correct"], 2);
+}
+
+TEST_F(EvalByPositions, EveryFaultAtOnce) {
+  expect_refused("--reference-positions none.csv --query-positions none2.csv --radius 0 --truth t",
+                 {"none.csv", "none2.csv", "radius", "truth: positions are given too", "t: "});
+  expect_refused("--reference-positions r.csv", {"query-positions: not given"});
+  expect_refused("--query-positions q.csv", {"reference-positions: not given"});
+  expect_refused("--truth identity " + both_, {"leave one of them out"});
+  expect_refused("--radius 3", {"radius", "--reference-positions"});
+  expect_refused("--radius -3 " + both_, {"above 0"});
+  expect_refused("--radius nan " + both_, {"'nan'"});
+  expect_refused("--radius 0.001 " + both_, {"no query frame"});
+  expect_refused("--frames 2 " + both_, {"frames: 2", "5"});
+  folder_.write("r.csv", "frame,latitude,longitude\n0,0,0\n");
+  expect_refused(both_, {"give both alike"});
+  folder_.write("r.csv", "frame,x,y\n0,0,0\n0,1,1\n");
+  folder_.write("q.csv", "frame,x,y\n0,nan,0\n");
+  expect_refused(both_, {"r.csv:3: frame 0 is given twice", "q.csv:2: 'nan'"});
+}
+
+}  // namespace
+}  // namespace seqloop
