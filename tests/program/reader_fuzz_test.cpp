@@ -3,9 +3,12 @@
 #include <random>
 
 #include "evaluation/measures.hpp"
+#include "experiment/experiment.hpp"
+#include "experiment/kept_result.hpp"
 #include "gtest/gtest.h"
 #include "seqloop/config_file.hpp"
 #include "seqloop/matcher_settings.hpp"
+#include "temporary_folder.hpp"
 
 namespace seqloop {
 namespace {
@@ -93,6 +96,49 @@ TEST(ReaderFuzz, ConfigurationFiles) {
        [&](const std::string& text) {
          return program::apply_config_text(text, "c.toml", table, {}, known).empty();
        });
+}
+
+TEST(ReaderFuzz, Experiments) {
+  const std::string good = R"(title = "t"
+[[drive]]
+name = "a"
+source = "a"
+crop = "48x32+8+0"
+[[descriptor]]
+name = "d"
+remove-components = [1, 2]
+training = ["a"]
+[[pair]]
+name = "p"
+reference = "a"
+query = "a"
+[[method]]
+name = "m"
+descriptor = ["d"]
+method = "seqcnnslam"
+ds = [5, 6]
+[[figure]]
+where = { ds = 5 }
+[[table]]
+rows = "method"
+values = "recall"
+)";
+  fuzz(good, 4, [](const std::string& text) {
+    Faults faults;
+    const auto experiment = experiment::parse_experiment(text, "e.toml", "", faults);
+    for (const auto& run : experiment.runs) EXPECT_LT(run.pair, experiment.pairs.size());
+    return faults.empty();
+  });
+}
+
+TEST(ReaderFuzz, KeptResults) {
+  const test::TemporaryFolder folder;
+  experiment::Result result;
+  result.settings = {{"ds", "20"}};
+  result.measures.curve = {{0.25, 1.0}, {0.5, 0.75}};
+  keep_result(result, folder.path() / "r.json");
+  fuzz(test::read_all(folder.path() / "r.json"), 5,
+       [](const std::string& text) { return experiment::parse_result(text).has_value(); });
 }
 
 }  // namespace

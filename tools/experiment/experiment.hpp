@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/measures.hpp"
@@ -81,8 +82,13 @@ struct Experiment {
 
 /// Reads an experiment file. Relative paths in it start at `data`; where that is empty, at what the
 /// file's own `data` says, itself seen from the file's folder.
-/// Throws SetupError with every fault: unknown keys, drives, descriptors, methods, wrong values.
+/// Adds every fault: unknown keys, drives, descriptors, methods, wrong values. @return what could
+/// be read, so that the rest of it can be checked too
 [[nodiscard]] Experiment read_experiment(const std::filesystem::path& file,
-                                         const std::filesystem::path& data);
+                                         const std::filesystem::path& data, Faults& faults);
+
+/// The same from text that is at hand. @param file where it came from
+[[nodiscard]] Experiment parse_experiment(std::string_view text, const std::filesystem::path& file,
+                                          const std::filesystem::path& data, Faults& faults);
 
 }  // namespace seqloop::experiment

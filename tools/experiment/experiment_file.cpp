@@ -31,11 +31,11 @@ bool has(const Names& names, const std::string& name) {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, std::filesystem::path data)
-      : file_(file.string()), data_(std::move(data)) {}
+  Reader(const std::filesystem::path& file, std::filesystem::path data, Faults& faults)
+      : file_(file.string()), data_(std::move(data)), faults_(faults) {}
 
-  Experiment read() {
-    const toml::table root = program::parse_toml(files::read_text(file_), file_);
+  Experiment read(std::string_view text) {
+    const toml::table root = program::parse_toml(text, file_);
     read_head(root);
     each(root, "drive", [&](const Section& section) { read_drive(section); });
     each(root, "descriptor", [&](const Section& section) { read_descriptor(section); });
@@ -49,7 +49,6 @@ class Reader {
       faults_.push_back(
           {file_, "there is nothing to run in it", "add a [[pair]] and a [[method]]"});
     }
-    program::refuse(std::move(faults_));
     return std::move(experiment_);
   }
 
@@ -115,7 +114,7 @@ class Reader {
     OptionTable known;
     add_drive_options(known, none);
     const auto written = section.written(known, {"name", "training"});
-    for (std::vector<Setting>& chosen : combinations(written)) {
+    for (const std::vector<Setting>& chosen : section.combinations(written)) {
       DescriptorSpec descriptor{name, section.where(), {}, training, chosen, {}};
       OptionTable options;
       add_drive_options(options, descriptor.describer);
@@ -132,7 +131,8 @@ class Reader {
   void read_pair(const Section& section) {
     PairSpec pair;
     pair.where = section.where();
-    pair.name = section.name("pair", names_of(experiment_.pairs));
+    pair.name = section.name("pair", pairs_);
+    pairs_.push_back(pair.name);
     const auto drive = [&](const char* key) {
       const Names found = section.references(key, "drive", names_of(experiment_.drives));
       return found.empty() ? std::string() : found.front();
@@ -151,6 +151,8 @@ class Reader {
     find(pair.truth.query_positions);
     if (rule.dark_below > 0.0 || rule.standing_below > 0.0) pair.leave_out = rule;
     check_pair(section, pair);
+    // What refers to drives that are not there cannot be looked at any further.
+    if (pair.query.empty() || (section.has("reference") && pair.reference.empty())) return;
     experiment_.pairs.push_back(std::move(pair));
   }
 
@@ -174,9 +176,7 @@ class Reader {
     methods_.push_back(name);
     const Names descriptors =
         section.references("descriptor", "descriptor", names_of(experiment_.descriptors));
-    const Names pairs = section.has("pair")
-                            ? section.references("pair", "pair", names_of(experiment_.pairs))
-                            : names_of(experiment_.pairs);
+    const Names pairs = section.has("pair") ? section.references("pair", "pair", pairs_) : pairs_;
     if (!section.has("descriptor")) section.refuse("method '" + name + "' has no descriptor");
     for (std::string& setting : section.names("best-of")) {
       experiment_.best_of.push_back({name, std::move(setting)});
@@ -186,7 +186,7 @@ class Reader {
     add_matcher_options(known, none);
     const auto written = section.written(known, {"name", "descriptor", "pair", "best-of"});
     std::set<std::string> told;  // what is wrong with one combination is wrong with others
-    for (const std::vector<Setting>& chosen : combinations(written)) {
+    for (const std::vector<Setting>& chosen : section.combinations(written)) {
       program::MatcherSettings matcher;
       OptionTable options;
       add_matcher_options(options, matcher);
@@ -203,6 +203,8 @@ class Reader {
                   const std::vector<Setting>& chosen, const Names& descriptors,
                   const Names& pairs) {
     Faults faults;
+    static_cast<void>(
+        resolve(matcher, Use::localise, faults));  // without any pair or descriptor, too
     for (std::size_t d = 0; d < experiment_.descriptors.size(); ++d) {
       const DescriptorSpec& descriptor = experiment_.descriptors[d];
       if (!has(descriptors, descriptor.name)) continue;
@@ -229,8 +231,9 @@ class Reader {
   std::string file_;
   std::filesystem::path data_;
   Experiment experiment_;
+  Names pairs_;
   Names methods_;
-  Faults faults_;
+  Faults& faults_;
 };
 
 }  // namespace
@@ -239,8 +242,19 @@ const DriveSpec& Experiment::drive(const std::string& name) const {
   return *std::ranges::find(drives, name, &DriveSpec::name);
 }
 
-Experiment read_experiment(const std::filesystem::path& file, const std::filesystem::path& data) {
-  return Reader(file, data).read();
+Experiment read_experiment(const std::filesystem::path& file, const std::filesystem::path& data,
+                           Faults& faults) {
+  Experiment experiment;
+  program::collect(
+      faults, [&] { experiment = parse_experiment(files::read_text(file), file, data, faults); });
+  return experiment;
+}
+
+Experiment parse_experiment(std::string_view text, const std::filesystem::path& file,
+                            const std::filesystem::path& data, Faults& faults) {
+  Experiment experiment;
+  program::collect(faults, [&] { experiment = Reader(file, data, faults).read(text); });
+  return experiment;
 }
 
 }  // namespace seqloop::experiment

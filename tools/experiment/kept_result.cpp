@@ -48,8 +48,12 @@ void keep_result(const Result& result, const std::filesystem::path& file) {
 
 std::optional<Result> kept_result(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
+  return parse_result(files::read_text(file));
+}
+
+std::optional<Result> parse_result(std::string_view text) {
   try {
-    const Json json = Json::parse(files::read_text(file));
+    const Json json = Json::parse(text);
     Result result;
     json.at("pair").get_to(result.pair);
     json.at("method").get_to(result.method);

@@ -36,10 +36,9 @@ class Runner {
         drives_(experiment, folder_ / "descriptors"),
         kept_frames_(experiment.pairs.size()) {}
 
-  /// Everything that is wrong, before any work.
-  void check() {
-    Faults faults;
-    program::check_folder(faults, folder_);
+  /// Adds everything that is wrong, before any work.
+  void check(Faults& faults) {
+    if (!folder_.empty()) program::check_folder(faults, folder_);
     drives_.check(faults);
     for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
       const PairSpec& spec = experiment_.pairs[pair];
@@ -48,7 +47,6 @@ class Runner {
                      drives_.length(spec.query)},
                     faults);
     }
-    program::refuse(std::move(faults));
   }
 
   void run(std::size_t threads) {
@@ -124,11 +122,13 @@ class Runner {
         const bool number = setting.value.find_first_not_of("0123456789.") == std::string::npos;
         if (number) name += fmt::format(", {} {}", setting.name, setting.value);
       }
-      // What a run costs is mostly what it reads: all places, or ranges of them.
+      // What a run costs is mostly what it reads for each place: all of them, or ranges of them.
       const double share = run.config.candidates == Candidates::all ? 1.0 : 0.1;
       const auto bytes =
           static_cast<double>(std::filesystem::file_size(drives_.file(pair.query, run.descriptor)));
-      jobs.push_back({name, share * bytes * bytes, [this, &run] { match(run); }});
+      const auto& map = pair.reference.empty() ? pair.query : pair.reference;
+      const auto places = static_cast<double>(drives_.length(map).value_or(1000));
+      jobs.push_back({name, share * bytes * places, [this, &run] { match(run); }});
     }
     return jobs;
   }
@@ -241,10 +241,11 @@ class Runner {
 }  // namespace
 
 void run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
-                    std::size_t threads) {
+                    std::size_t threads, Faults faults) {
   opencv::use_threads(1);  // a job a core
   Runner runner(experiment, folder);
-  runner.check();
+  runner.check(faults);
+  program::refuse(std::move(faults));
   runner.run(threads);
   write_report(runner.report(threads), folder);
 }

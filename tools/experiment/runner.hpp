@@ -15,8 +15,9 @@ namespace seqloop::experiment {
 /// the program's version, so that a second run goes on where the first one stopped.
 ///
 /// @param threads jobs at once; runs of a timed experiment are matched one at a time
+/// @param faults what is wrong already: it is told together with what is found
 /// Throws SetupError (every fault), files::IoError, and when it is interrupted.
 void run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
-                    std::size_t threads);
+                    std::size_t threads, Faults faults);
 
 }  // namespace seqloop::experiment

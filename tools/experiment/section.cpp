@@ -59,7 +59,10 @@ Names Section::references(const char* key, const char* kind, const Names& known)
 std::vector<Setting> Section::set_all(const program::OptionTable& options,
                                       const Names& others) const {
   const auto found = read_options(table_, file_, options, {.ignored = others}, faults_);
-  std::vector<Setting> settings = combinations(found).front();
+  std::vector<Setting> settings;
+  for (const program::WrittenOption& each : found) {
+    settings.push_back({each.option->name, each.values.front()});
+  }
   set(options, found, settings);
   return settings;
 }
@@ -101,7 +104,9 @@ std::vector<Filter> Section::filters() const {
   return filters;
 }
 
-std::vector<std::vector<Setting>> combinations(const std::vector<program::WrittenOption>& written) {
+std::vector<std::vector<Setting>> Section::combinations(
+    const std::vector<program::WrittenOption>& written) const {
+  constexpr std::size_t most = 10'000;
   std::vector<std::vector<Setting>> all{{}};
   for (const program::WrittenOption& option : written) {
     std::vector<std::vector<Setting>> longer;
@@ -112,6 +117,10 @@ std::vector<std::vector<Setting>> combinations(const std::vector<program::Writte
       }
     }
     all = std::move(longer);
+    if (all.size() > most) {
+      refuse(fmt::format("its lists make more than {} combinations", most), "shorten them");
+      return {};
+    }
   }
   return all;
 }

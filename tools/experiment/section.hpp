@@ -38,6 +38,10 @@ class Section {
   [[nodiscard]] std::vector<program::WrittenOption> written(const program::OptionTable& options,
                                                             const Names& others) const;
 
+  /// Every choice of one value for each option; refuses more than 10,000.
+  [[nodiscard]] std::vector<std::vector<Setting>> combinations(
+      const std::vector<program::WrittenOption>& written) const;
+
   /// Sets the options of the same names in another table to these values.
   void set(const program::OptionTable& options, const std::vector<program::WrittenOption>& written,
            const std::vector<Setting>& chosen) const;
@@ -50,9 +54,5 @@ class Section {
   const std::string& file_;
   Faults& faults_;
 };
-
-/// Every choice of one value for each option.
-[[nodiscard]] std::vector<std::vector<Setting>> combinations(
-    const std::vector<program::WrittenOption>& written);
 
 }  // namespace seqloop::experiment

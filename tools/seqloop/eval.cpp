@@ -100,12 +100,11 @@ void eval(const EvalSettings& settings, Faults faults) {
     faults.push_back({"matches", "an experiment makes its own", "leave out one of the two"});
   }
   if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
-  experiment::Experiment experiment;
-  collect(faults,
-          [&] { experiment = experiment::read_experiment(settings.experiment, settings.data); });
-  refuse(std::move(faults));
+  const experiment::Experiment experiment =
+      experiment::read_experiment(settings.experiment, settings.data, faults);
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  run_experiment(experiment, settings.out, settings.jobs > 0 ? settings.jobs : cores);
+  run_experiment(experiment, settings.out, settings.jobs > 0 ? settings.jobs : cores,
+                 std::move(faults));
   say("the report is {}", (settings.out / "index.html").string());
 }
 

@@ -1,0 +1,293 @@
+// Whole experiments through the real binary: their numbers against those of the single verbs, what
+// is done again and what is not, and what can be wrong with them.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "evaluation/csv.hpp"
+#include "platform/pictures.hpp"
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+class Experiments : public test::Program {
+ protected:
+  void SetUp() override {
+    make_drive("a", 40, 0);
+    make_drive("b", 40, 1);
+    make_drive("short", 6, 0);
+  }
+
+  /// Frame i of all drives shows the same place, a little moved.
+  void make_drive(const std::string& name, int frames, int moved) const {
+    std::filesystem::create_directory(file(name));
+    for (int i = 0; i < frames; ++i) {
+      const cv::Mat place = test::textured(64 + 8, 32, static_cast<std::uint64_t>(i) / 2 + 1);
+      folder_.write(fmt::format("{}/{}.png", name, i),
+                    test::encoded(place(cv::Rect(moved + i % 2 * 3, 0, 64, 32)).clone(), ".png"));
+    }
+  }
+
+  static constexpr const char* drives = R"(
+[[drive]]
+name = "first"
+source = "a"
+[[drive]]
+name = "second"
+source = "b"
+[[descriptor]]
+name = "gradients"
+[[descriptor]]
+name = "patches"
+descriptor = "patches"
+)";
+  static constexpr const char* pair = R"(
+[[pair]]
+name = "both"
+reference = "first"
+query = "second"
+tolerance = 1
+)";
+  static constexpr const char* methods = R"(
+[[method]]
+name = "ours"
+method = "seqcnnslam"
+descriptor = "gradients"
+ds = [4, 8]
+[[method]]
+name = "ranges"
+method = "a-seqcnnslam"
+paper = true
+descriptor = "gradients"
+ds = 4
+k = [2, 3]
+[[method]]
+name = "theirs"
+method = "seqslam"
+descriptor = "patches"
+ds = 4
+[[figure]]
+title = "Curves"
+panel = "ds"
+[[table]]
+title = "Numbers"
+rows = ["method"]
+columns = ["ds"]
+values = ["recall_at_100_precision"]
+)";
+
+  void write_experiment(const std::string& text) const { folder_.write("e.toml", text); }
+
+  [[nodiscard]] test::Outcome run_it() const { return run("eval --experiment e.toml --out out"); }
+
+  test::Outcome expect_done() const {
+    test::Outcome outcome = run_it();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome;
+  }
+
+  void expect_refused(const std::vector<std::string>& words) const {
+    const test::Outcome outcome = run_it();
+    EXPECT_EQ(outcome.exit_code, 2);
+    for (const std::string& word : words) {
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << "no '" << word << "' in:\n"
+                                                           << outcome.err;
+    }
+    EXPECT_FALSE(exists("out")) << "no work before the faults are told";
+  }
+
+  /// The row of results.csv of a method with these settings.
+  [[nodiscard]] std::size_t row_of(const evaluation::CsvTable& table, const std::string& method,
+                                   double ds, double k) const {
+    const std::string text = test::read_all(file("out/results.csv"));
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line);
+    for (std::size_t row = 0; std::getline(lines, line); ++row) {
+      if (!line.starts_with("both," + method + ',')) continue;
+      if (table.number(row, table.column("ds")) != ds) continue;
+      if (k == 0.0 || table.number(row, table.column("k")) == k) return row;
+    }
+    ADD_FAILURE() << "no row of " << method;
+    return 0;
+  }
+
+  void expect_like_the_verbs(const std::string& method, const std::string& descriptor,
+                             const std::string& flags, double ds, double k = 0.0) const {
+    SCOPED_TRACE(flags);
+    for (const std::string drive : {"a", "b"}) {
+      ASSERT_EQ(run(fmt::format("describe --source {0} --out {0}.npy --descriptor {1}", drive,
+                                descriptor))
+                    .exit_code,
+                0);
+    }
+    ASSERT_EQ(run("match --reference a.npy --query b.npy --out m.csv " + flags).exit_code, 0);
+    const auto wanted =
+        nlohmann::json::parse(run("eval --matches m.csv --frames 40 --tolerance 1 --json").out);
+    const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+    const std::size_t row = row_of(table, method, ds, k);
+    for (const char* name : {"answered", "correct", "precision", "recall",
+                             "recall_at_100_precision", "area_under_curve"}) {
+      EXPECT_NEAR(table.number(row, table.column(name)), wanted[name].get<double>(), 1e-8) << name;
+    }
+    EXPECT_GT(table.number(row, table.column("answered")), 0.0);
+  }
+};
+
+TEST_F(Experiments, SayWhatDescribeMatchAndEvalSay) {
+  write_experiment(std::string(drives) + pair + methods);
+  const auto outcome = expect_done();
+  EXPECT_NE(outcome.err.find("matching 5/5"), std::string::npos) << outcome.err;
+  for (const std::string name : {"out/index.html", "out/results.csv", "out/figure-1-curves.svg"}) {
+    EXPECT_TRUE(exists(name)) << name;
+  }
+  expect_like_the_verbs("ours", "gradients", "--method seqcnnslam --ds 4", 4);
+  expect_like_the_verbs("ours", "gradients", "--method seqcnnslam --ds 8", 8);
+  expect_like_the_verbs("ranges", "gradients", "--method a-seqcnnslam --paper --ds 4 --k 3", 4, 3);
+  expect_like_the_verbs("theirs", "patches", "--method seqslam --ds 4", 4);
+}
+
+TEST_F(Experiments, GoOnWhereTheyWere) {
+  write_experiment(std::string(drives) + pair + methods);
+  // A small limit on file sizes is a disk that is full after the first descriptors.
+  const test::Outcome full = run("--version && trap '' XFSZ && ulimit -f 100 && '" SEQLOOP_BINARY
+                                 "' eval --experiment e.toml --out out --jobs 1");
+  EXPECT_EQ(full.exit_code, 1) << full.err;
+  EXPECT_NE(full.err.find("File too large"), std::string::npos) << full.err;
+  EXPECT_FALSE(exists("out/index.html"));
+
+  EXPECT_NE(expect_done().err.find("matching 5/5"), std::string::npos);
+  const std::string page = test::read_all(file("out/results.csv"));
+  EXPECT_EQ(expect_done().err.find("matching"), std::string::npos) << "nothing is left to do";
+  EXPECT_EQ(test::read_all(file("out/results.csv")), page);
+
+  std::vector<std::filesystem::path> kept;
+  for (const auto& entry : std::filesystem::directory_iterator(file("out/runs"))) {
+    if (entry.path().extension() == ".json") kept.push_back(entry.path());
+  }
+  ASSERT_EQ(kept.size(), 5U);
+  std::filesystem::remove(kept[0]);
+  folder_.write("out/runs/" + kept[1].filename().string(), "{\"pair\": 1}");
+  EXPECT_NE(expect_done().err.find("matching 2/2"), std::string::npos);
+
+  make_drive("b", 40, 2);
+  const std::string err = expect_done().err;
+  EXPECT_NE(err.find("preparing 2/2"), std::string::npos) << "another drive: " << err;
+  EXPECT_NE(err.find("matching 5/5"), std::string::npos) << err;
+}
+
+TEST_F(Experiments, EveryFaultAtOnceBeforeAnyWork) {
+  folder_.write("t.csv", "query,reference\n1,1\n40,3\n2,77\n");
+  write_experiment(R"(
+titel = "x"
+[[drive]]
+name = "first"
+source = "a"
+[[drive]]
+name = "second"
+source = "none"
+[[descriptor]]
+name = "net"
+model = "none.onnx"
+[[pair]]
+name = "wrong truth"
+reference = "first"
+query = "first"
+truth = "t.csv"
+[[pair]]
+name = "no drive"
+reference = "firs"
+query = "second"
+[[method]]
+name = "m"
+method = "seqcnslam"
+descriptor = "nett"
+ds = [4, 100, "x"]
+[[method]]
+name = "n"
+method = "seqslam"
+descriptor = "net"
+ds = 2
+[[table]]
+title = "t"
+rows = "method"
+values = "recal"
+)");
+  expect_refused(
+      {"e.toml:2", "did you mean 'title'", "none: ", "none.onnx", "frame 40 of the query",
+       "frame 77 of the reference", "there is no [[drive]] 'firs'", "did you mean 'first'",
+       "there is no [[descriptor]] 'nett'", "'seqcnslam' is no known method",
+       "'ds' must be a whole number", "'net' does not go with it", "did you mean 'recall'"});
+}
+
+TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
+  const std::string method =
+      "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\n"
+      "descriptor = \"gradients\"\nds = [4, 10]\n";
+  const std::string third = "[[drive]]\nname = \"third\"\nsource = \"short\"\n";
+  write_experiment(drives + third +
+                   "[[pair]]\nname = \"p\"\nreference = \"first\"\n"
+                   "query = \"third\"\n" +
+                   method);
+  expect_refused({"cannot belong together in drives of 40 and of 6 frames",
+                  "a window of 11 frames is longer than the drive, 6 frames"});
+  write_experiment(drives + third + "[[pair]]\nname = \"p\"\nquery = \"first\"\n" + method);
+  expect_refused({"closes loops within a drive"});
+  write_experiment(drives + std::string("[[pair]]\nname = \"p\"\nquery = \"first\"\n"));
+  expect_refused({"closes loops within a drive"});
+  write_experiment("");
+  expect_refused({"nothing to run"});
+  write_experiment("[[drive]\n");
+  expect_refused({"not TOML"});
+}
+
+TEST_F(Experiments, LeaveDarkFramesOutAndSayHowMany) {
+  for (int i = 20; i < 24; ++i) {
+    folder_.write(fmt::format("a/{}.png", i),
+                  test::encoded(cv::Mat(32, 64, CV_8UC3, cv::Scalar::all(3)), ".png"));
+  }
+  const std::string method =
+      "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\ndescriptor = \"gradients\"\nds = 4\n";
+  write_experiment(drives + std::string(pair) + "dark-below = 30\n" + method);
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  EXPECT_EQ(table.whole(0, table.column("queries")), 36U);
+  EXPECT_EQ(table.whole(0, table.column("frames")), 36U);
+  EXPECT_NE(test::read_all(file("out/index.html")).find("4 dark"), std::string::npos);
+}
+
+TEST_F(Experiments, CloseLoopsAndRankTheBest) {
+  std::string truth = "query,reference\n";
+  for (int i = 0; i < 40; ++i) {
+    std::filesystem::copy_file(file(fmt::format("b/{}.png", i)),
+                               file(fmt::format("a/{}.png", 40 + i)));
+    truth += fmt::format("{},{}\n", 40 + i, i);
+  }
+  folder_.write("t.csv", truth);
+  write_experiment(drives + std::string(R"(
+[[pair]]
+name = "lap"
+query = "first"
+truth = "t.csv"
+[[method]]
+name = "m"
+method = "seqcnnslam"
+descriptor = "gradients"
+exclude = 20
+ds = [2, 4, 6]
+best-of = "ds"
+)"));
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 4U) << "three, and the best of them";
+  const auto recall = [&](std::size_t row) {
+    return table.number(row, table.column("recall_at_100_precision"));
+  };
+  EXPECT_EQ(recall(3), std::max({recall(0), recall(1), recall(2)}));
+  EXPECT_GT(recall(3), 0.5);
+  EXPECT_EQ(table.whole(0, table.column("frames")), 40U);
+}
+
+}  // namespace
+}  // namespace seqloop
