@@ -73,7 +73,7 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   if (config.candidates != Candidates::all) {
     distances *= window;
   } else if (config.use == Use::close_loops) {
-    distances += config.sequence_length * (config.enhance ? config.rwindow / 2 + 1 : 1);
+    distances += config.sequence_length;
   }
   if (config.candidates == Candidates::adaptive) distances += ChangeDegree::reach;
   return {capacity.places, distances, capacity.places * lines};
@@ -168,6 +168,13 @@ std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
   return static_cast<std::size_t>(std::min<std::uint64_t>(centre - config_.exclude, map_->size()));
 }
 
+/// Rows whose neighbourhood is all there, so that what is enhanced by it stays right.
+std::size_t Detector::complete_rows() const noexcept {
+  const bool growing = config_.use == Use::close_loops && map_->size() < map_->capacity();
+  const std::size_t reach = config_.enhance && growing ? config_.rwindow / 2 : 0;
+  return map_->size() - std::min(map_->size(), reach);
+}
+
 /// Where all rows are candidates, every difference that a frame can be asked for while it is in the
 /// window will be: computing them as it arrives spreads the work evenly. Where loops are closed
 /// onto the window itself, a column grows by the place that has just been added.
@@ -175,9 +182,11 @@ std::size_t Detector::fill_columns() noexcept {
   if (config_.candidates != Candidates::all) return 0;
   const std::uint64_t newest = slices_.frames() - 1;
   std::uint64_t frame = newest - std::min<std::uint64_t>(newest, config_.sequence_length);
+  const std::size_t complete = complete_rows();
   std::size_t computed = 0;
   for (; frame <= newest; ++frame) {
-    computed += slices_.fill(*map_, frame, 0, rows_searched(frame + trajectories_.centre()));
+    const std::size_t rows = rows_searched(frame + trajectories_.centre());
+    computed += slices_.fill(*map_, frame, 0, std::min(rows, complete));
   }
   return computed;
 }

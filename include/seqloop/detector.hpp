@@ -76,6 +76,7 @@ class Detector {
 
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
+  [[nodiscard]] std::size_t complete_rows() const noexcept;
   [[nodiscard]] std::size_t fill_columns() noexcept;
   [[nodiscard]] std::size_t fill_window(std::uint64_t oldest, CandidateRun run,
                                         std::size_t rows) noexcept;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "opencv/detail/guarded.hpp"
+#include "opencv/detail/one_line.hpp"
 #include "opencv/detail/training.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/fault.hpp"
@@ -113,8 +114,12 @@ class BagOfWords::Impl {
                 "ask for at least 1 and no more than there are features, or give drives with "
                 "larger pictures or more of them"});
     }
-    vocabulary_ = learn_words(values, static_cast<int>(words));
-    weigh(pictures);
+    try {
+      vocabulary_ = learn_words(values, static_cast<int>(words));
+      weigh(pictures);
+    } catch (const cv::Exception& error) {
+      throw SetupError(Fault{"words", "OpenCV cannot learn them (" + one_line(error.err) + ")"});
+    }
   }
 
   /// May throw.

@@ -35,8 +35,8 @@ TEST_F(Accuracy, GardensPointWithTheBuiltInDescriptor) {
     return recall_at_100_precision(drives + "day_left", drives + "night_right",
                                    "--method seqcnnslam --ds " + ds, "--frames 200");
   };
-  EXPECT_GE(at("40"), 0.60);
-  EXPECT_GE(at("20"), 0.45);
+  EXPECT_GE(at("40"), 0.78);
+  EXPECT_GE(at("20"), 0.88);
 }
 
 TEST_F(Accuracy, GardensPointWithPool5ToTheLetter) {

@@ -171,6 +171,13 @@ TEST_F(Experiments, GoOnWhereTheyWere) {
   folder_.write("out/runs/" + kept[1].filename().string(), "{\"pair\": 1}");
   EXPECT_NE(expect_done().err.find("matching 2/2"), std::string::npos);
 
+  // Another first sequence length: another run is shown as a matrix.
+  std::string fewer = std::string(drives) + pair + methods;
+  fewer.replace(fewer.find("[4, 8]"), 6, "[8, 4]");
+  write_experiment(fewer);
+  EXPECT_NE(expect_done().err.find("matching 1/1"), std::string::npos);
+  EXPECT_TRUE(expect_done().err.find("matching") == std::string::npos);
+
   make_drive("b", 40, 2);
   const std::string err = expect_done().err;
   EXPECT_NE(err.find("preparing 2/2"), std::string::npos) << "another drive: " << err;
@@ -181,6 +188,10 @@ TEST_F(Experiments, EveryFaultAtOnceBeforeAnyWork) {
   folder_.write("t.csv", "query,reference\n1,1\n40,3\n2,77\n");
   write_experiment(R"(
 titel = "x"
+[[drive]]
+name = "long"
+source = "a"
+fps = 0
 [[drive]]
 name = "first"
 source = "a"
@@ -199,11 +210,13 @@ truth = "t.csv"
 name = "no drive"
 reference = "firs"
 query = "second"
+dark-below = 300
 [[method]]
 name = "m"
 method = "seqcnslam"
 descriptor = "nett"
-ds = [4, 100, "x"]
+ds = [4, 4, "x"]
+best-of = "dss"
 [[method]]
 name = "n"
 method = "seqslam"
@@ -218,7 +231,8 @@ values = "recal"
       {"e.toml:2", "did you mean 'title'", "none: ", "none.onnx", "frame 40 of the query",
        "frame 77 of the reference", "there is no [[drive]] 'firs'", "did you mean 'first'",
        "there is no [[descriptor]] 'nett'", "'seqcnslam' is no known method",
-       "'ds' must be a whole number", "'net' does not go with it", "did you mean 'recall'"});
+       "'ds' must be a whole number", "'net' does not go with it", "did you mean 'recall'",
+       "'fps' must be between", "'dss' is no setting", "has 4 twice", "grey levels"});
 }
 
 TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
@@ -240,6 +254,48 @@ TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
   expect_refused({"nothing to run"});
   write_experiment("[[drive]\n");
   expect_refused({"not TOML"});
+}
+
+TEST_F(Experiments, DoAgainWhatOtherFilesSayOtherwise) {
+  const std::string spans =
+      "[[drive]]\nname = \"late\"\nsource = \"a\"\nleave-out = \"spans.csv\"\n";
+  std::string places = "frame,x,y\n";
+  for (int i = 0; i < 40; ++i) places += fmt::format("{},{},0\n", i, i);
+  folder_.write("r.csv", places);
+  folder_.write("q.csv", places);
+  folder_.write("spans.csv", "from_s,to_s\n0,0.2\n");
+  write_experiment(drives + spans + R"(
+[[pair]]
+name = "placed"
+reference = "first"
+query = "second"
+reference-positions = "r.csv"
+query-positions = "q.csv"
+radius = 1.5
+[[pair]]
+name = "late"
+reference = "late"
+query = "late"
+[[method]]
+name = "m"
+method = "seqcnnslam"
+descriptor = "gradients"
+ds = 4
+)");
+  const auto number = [&](std::size_t row, const char* name) {
+    const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+    return table.whole(row, table.column(name));
+  };
+  expect_done();
+  EXPECT_GT(number(0, "correct"), 20U);
+  EXPECT_EQ(number(1, "places"), 38U);
+  std::string moved = "frame,x,y\n";
+  for (int i = 0; i < 40; ++i) moved += fmt::format("{},{},0\n", i, (i + 20) % 40);
+  folder_.write("r.csv", moved);
+  folder_.write("spans.csv", "from_s,to_s\n0,0.5\n");
+  expect_done();
+  EXPECT_LT(number(0, "correct"), 10U);
+  EXPECT_EQ(number(1, "places"), 35U);
 }
 
 TEST_F(Experiments, LeaveDarkFramesOutAndSayHowMany) {

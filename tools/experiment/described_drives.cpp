@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
 #include <set>
 #include <utility>
 
 #include "experiment/fingerprint.hpp"
 #include "seqloop/build_info.hpp"
 #include "seqloop/describe_drive.hpp"
+#include "seqloop/model_options.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::experiment {
@@ -34,7 +36,9 @@ std::unique_ptr<FrameSource> DescribedDrives::open(const std::string& drive) con
     throw SetupError(Fault{spec.source.string(), "holds descriptors already",
                            "give an image folder or a video"});
   }
-  return make_stills(program::open_drive(spec.source, "source", {}), spec.stills);
+  program::DriveSettings settings;
+  settings.fps = spec.fps;
+  return make_stills(program::open_drive(spec.source, "source", settings), spec.stills);
 }
 
 void DescribedDrives::check(Faults& faults) {
@@ -58,8 +62,9 @@ void DescribedDrives::check(Faults& faults) {
       const program::DriveSettings& describer = descriptor.describer;
       program::check_describer(describer, !descriptor.training.empty());
       made_from[i] = text_of(descriptor.settings);
-      for (const auto& path : {describer.model.model, describer.model.config_model}) {
-        if (!path.empty()) made_from[i] += path.string() + state_of(path);
+      for (const std::filesystem::path& path :
+           program::model_files(describer.model, describer.model_flags_given)) {
+        made_from[i] += path.string() + state_of(path);
       }
       for (const std::string& name : descriptor.training) made_from[i] += states[name];
     });
@@ -67,7 +72,7 @@ void DescribedDrives::check(Faults& faults) {
   for (const Wanted& each : wanted) {
     const std::string& descriptor = experiment_.descriptors[each.descriptor].name;
     const std::string all =
-        program::version_line() + states[each.drive] + made_from[each.descriptor];
+        program::program_state() + states[each.drive] + made_from[each.descriptor];
     files_[each] = folder_ / fmt::format("{}--{}--{}.npy", file_name(each.drive),
                                          file_name(descriptor), fingerprint(all));
   }
@@ -106,7 +111,11 @@ void DescribedDrives::describe(const Wanted& wanted) const {
   for (const std::string& drive : descriptor.training) {
     lent.push_back(training.emplace_back(open(drive)).get());
   }
+  // OpenCV keeps its log level and its threads for the whole process.
+  static std::mutex opening;
+  std::unique_lock lock(opening);
   const auto describer = open_describer(descriptor.describer, lent);
+  lock.unlock();
   const auto source = open(wanted.drive);
   files::NpyWriter out(file(wanted.drive, wanted.descriptor), describer->size());
   program::Progress silent;

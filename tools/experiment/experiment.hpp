@@ -23,6 +23,7 @@ struct DriveSpec {
   std::string where;  ///< FILE:LINE
   std::filesystem::path source;
   program::StillsSettings stills;
+  double fps = 10.0;              ///< of an image folder
   std::vector<Setting> settings;  ///< as written
 };
 

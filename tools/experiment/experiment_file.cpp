@@ -97,8 +97,13 @@ class Reader {
     drive.name = section.name("drive", names_of(experiment_.drives));
     OptionTable options;
     options.path("source", drive.source, "");
+    options.number("fps", drive.fps, "");
     add_stills_options(options, drive.stills);
-    drive.settings = section.set_all(options, {"name"});
+    drive.settings = section.set_all(options, {"name", "leave-out"});
+    read_leave_out(section, drive);
+    if (!(drive.fps >= 1e-3 && drive.fps <= 1e6)) {
+      section.refuse("'fps' must be between 0.001 and 1000000");
+    }
     if (drive.source.empty()) section.refuse("drive '" + drive.name + "' has no source");
     find(drive.source);
     for (const Fault& fault : validate(drive.stills)) {
@@ -107,13 +112,32 @@ class Reader {
     experiment_.drives.push_back(std::move(drive));
   }
 
+  /// Spans, or a file of them, which may change while its name does not.
+  void read_leave_out(const Section& section, DriveSpec& drive) const {
+    const Names text = section.names("leave-out");
+    if (text.empty()) return;
+    std::filesystem::path file = text.front();
+    find(file);
+    std::error_code error;
+    const bool is_file = std::filesystem::exists(file, error);
+    try {
+      drive.stills.leave_out = program::parse_intervals(is_file ? file.string() : text.front());
+    } catch (const std::invalid_argument& why) {
+      section.refuse(std::string("'leave-out': ") + why.what());
+    }
+    for (const program::Interval& span : drive.stills.leave_out) {
+      drive.settings.push_back({"leave-out", fmt::format("{}-{}", span.from_s, span.to_s)});
+    }
+  }
+
   void read_descriptor(const Section& section) {
     const std::string name = section.name("descriptor", names_of(experiment_.descriptors));
     const Names training = section.references("training", "drive", names_of(experiment_.drives));
     program::DriveSettings none;
     OptionTable known;
     add_drive_options(known, none);
-    const auto written = section.written(known, {"name", "training"});
+    if (section.has("fps")) section.refuse("'fps' belongs to a [[drive]]");
+    const auto written = section.written(known, {"name", "training", "fps"});
     for (const std::vector<Setting>& chosen : section.combinations(written)) {
       DescriptorSpec descriptor{name, section.where(), {}, training, chosen, {}};
       OptionTable options;
@@ -135,6 +159,7 @@ class Reader {
     pairs_.push_back(pair.name);
     const auto drive = [&](const char* key) {
       const Names found = section.references(key, "drive", names_of(experiment_.drives));
+      if (found.size() > 1) section.refuse(fmt::format("'{}' is one drive", key));
       return found.empty() ? std::string() : found.front();
     };
     pair.reference = drive("reference");
@@ -150,18 +175,28 @@ class Reader {
     find(pair.truth.reference_positions);
     find(pair.truth.query_positions);
     if (rule.dark_below > 0.0 || rule.standing_below > 0.0) pair.leave_out = rule;
-    check_pair(section, pair);
+    check_pair(section, pair, rule);
     // What refers to drives that are not there cannot be looked at any further.
     if (pair.query.empty() || (section.has("reference") && pair.reference.empty())) return;
     experiment_.pairs.push_back(std::move(pair));
   }
 
-  static void check_pair(const Section& section, const PairSpec& pair) {
+  static void check_pair(const Section& section, const PairSpec& pair, const LeaveOutRule& rule) {
     const bool closing = !section.has("reference");
     if (closing && by_identity(pair.truth)) {
       section.refuse(
           "pair '" + pair.name + "' closes loops within a drive, where no frame is its own truth",
           "give a truth = \"FILE.csv\", or a reference drive");
+    }
+    if (closing && !pair.truth.reference_positions.empty()) {
+      section.refuse(
+          "pair '" + pair.name + "' closes loops within a drive, where every frame is near itself",
+          "give a truth = \"FILE.csv\"");
+    }
+    for (const double grey : {rule.dark_below, rule.standing_below}) {
+      if (!(grey >= 0.0 && grey <= 255.0)) {
+        section.refuse("dark-below and standing-below are grey levels, 0 to 255");
+      }
     }
     if (pair.leave_out && (closing || !by_identity(pair.truth))) {
       section.refuse("pair '" + pair.name +
@@ -179,6 +214,7 @@ class Reader {
     const Names pairs = section.has("pair") ? section.references("pair", "pair", pairs_) : pairs_;
     if (!section.has("descriptor")) section.refuse("method '" + name + "' has no descriptor");
     for (std::string& setting : section.names("best-of")) {
+      section.check_setting(setting);
       experiment_.best_of.push_back({name, std::move(setting)});
     }
     program::MatcherSettings none;
@@ -221,7 +257,10 @@ class Reader {
           // In the report a method is what the file calls it.
           if (setting.name == "method") setting.name = "algorithm";
         }
-        run.settings.insert(run.settings.end(), descriptor.swept.begin(), descriptor.swept.end());
+        for (Setting setting : descriptor.swept) {
+          if (setting.name == "descriptor") setting.name = "kind";
+          run.settings.push_back(std::move(setting));
+        }
         experiment_.runs.push_back(std::move(run));
       }
     }

@@ -21,7 +21,8 @@ double seconds_since(Clock::time_point start) {
 }
 
 std::string duration(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
+  constexpr double longest = 1e9;
+  const auto whole = static_cast<long>(std::clamp(seconds, 0.0, longest) + 0.5);
   return whole < 100 ? fmt::format("{} s", whole) : fmt::format("{} min", (whole + 30) / 60);
 }
 
@@ -37,12 +38,12 @@ class Workers {
       try {
         program::stop_if_interrupted();
         job->work();
+        tell(*job, seconds_since(start));
       } catch (...) {
         const std::scoped_lock lock(mutex_);
         if (!failure_) failure_ = std::current_exception();
         return;
       }
-      tell(*job, seconds_since(start));
     }
   }
 
@@ -60,7 +61,7 @@ class Workers {
     const std::scoped_lock lock(mutex_);
     ++done_;
     done_cost_ += job.cost;
-    const double left = seconds_since(start_) * (cost_ - done_cost_) / done_cost_;
+    const double left = seconds_since(start_) * (cost_ - done_cost_) / std::max(done_cost_, 1e-9);
     program::say("{} {}/{}: {} ({}){}", doing_, done_, jobs_.size(), job.name, duration(seconds),
                  done_ < jobs_.size() ? ", about " + duration(left) + " left" : "");
   }

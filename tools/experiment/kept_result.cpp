@@ -27,6 +27,8 @@ void for_each_number(AResult& result, Each each) {
   each("most_distances", result.most_distances);
   each("candidates", result.candidates);
   each("seconds", result.seconds);
+  each("alone", result.alone);
+  each("made_by", result.made_by);
 }
 
 }  // namespace

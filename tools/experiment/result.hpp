@@ -30,10 +30,12 @@ struct Result {
   evaluation::Measures measures{};
   double distances = 0.0;            ///< descriptor distances a frame, mean
   std::uint64_t most_distances = 0;  ///< of one frame
-  double candidates = 0.0;           ///< rows scored a frame, mean
+  double candidates = 0.0;           ///< rows scored, mean over the frames that had any
   double seconds = 0.0;              ///< matching alone, all frames
+  bool alone = false;                ///< no other run was matched meanwhile
+  std::string made_by{};             ///< program and machine
   /// Seconds of the exhaustive search over the same descriptors with the same sequence length, by
-  /// `seconds`; NaN where it was not run.
+  /// `seconds`; NaN where it was not run, or where runs shared a machine.
   double speed_up = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -55,17 +55,13 @@ class Runner {
     std::vector<Job> first = drives_.jobs();
     for (Job& job : leave_out_jobs()) first.push_back(std::move(job));
     do_jobs("preparing", first, threads);
-    do_jobs("matching", match_jobs(), experiment_.timed ? 1 : threads);
+    alone_ = experiment_.timed || threads == 1;
+    do_jobs("matching", match_jobs(), alone_ ? 1 : threads);
   }
 
-  [[nodiscard]] Report report(std::size_t threads) const {
-    Report report{experiment_.title,
-                  experiment_.text,
-                  conditions(threads),
-                  {},
-                  experiment_.figures,
-                  experiment_.tables,
-                  {}};
+  [[nodiscard]] Report report() const {
+    Report report{experiment_.title,   experiment_.text,   {}, {},
+                  experiment_.figures, experiment_.tables, {}};
     for (const RunSpec& run : experiment_.runs) {
       report.results.push_back(kept_result(file(run, "json")).value());
       if (!shown_as_matrix(run)) continue;
@@ -74,6 +70,7 @@ class Runner {
                                  report.results.back().descriptor,
                                  {png.begin(), png.end()}});
     }
+    report.conditions = conditions(report.results);
     add_speed_ups(experiment_, report.results);
     add_best(experiment_, report.results);
     return report;
@@ -114,7 +111,7 @@ class Runner {
   std::vector<Job> match_jobs() const {
     std::vector<Job> jobs;
     for (const RunSpec& run : experiment_.runs) {
-      if (kept_result(file(run, "json"))) continue;
+      if (is_done(run)) continue;
       const PairSpec& pair = experiment_.pairs[run.pair];
       std::string name = fmt::format("{}: {}, {}", pair.name, run.method,
                                      experiment_.descriptors[run.descriptor].name);
@@ -159,6 +156,8 @@ class Runner {
     result.most_distances = matched.most_distances;
     result.candidates = matched.candidates;
     result.seconds = matched.seconds;
+    result.alone = alone_;
+    result.made_by = program::condition_line();
     if (shown_as_matrix(run)) {
       files::OutputFile out(file(run, "png"));
       out.write(std::as_bytes(std::span(matched.matrix_png)));
@@ -191,36 +190,50 @@ class Runner {
   /// Where a run's result is kept; the name tells everything that it depends on.
   [[nodiscard]] std::filesystem::path file(const RunSpec& run, const char* extension) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
-    std::string from = program::version_line() + text_of(run.settings) + run.method + pair.name +
+    std::string from = program::program_state() + text_of(run.settings) + run.method + pair.name +
                        drives_.file(pair.query, run.descriptor).string() + text_of(pair.settings) +
                        (experiment_.timed ? "timed" : "");
     if (!pair.reference.empty()) from += drives_.file(pair.reference, run.descriptor).string();
     if (!pair.truth.file.empty() && !by_identity(pair.truth)) from += state_of(pair.truth.file);
+    for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {
+      if (!path.empty()) from += state_of(path);
+    }
     from += std::to_string(static_cast<int>(experiment_.threshold_on));
     return folder_ / "runs" /
            fmt::format("{}--{}--{}.{}", file_name(pair.name), file_name(run.method),
                        fingerprint(from), extension);
   }
 
-  /// The first exhaustive run of each method, pair and descriptor that compares sequences.
+  [[nodiscard]] bool is_done(const RunSpec& run) const {
+    if (!kept_result(file(run, "json"))) return false;
+    // Which run is shown as a matrix depends on the others in the file.
+    return !shown_as_matrix(run) || std::filesystem::exists(file(run, "png"));
+  }
+
+  /// The first run of each method, pair and descriptor whose matrix is whole, and that compares
+  /// sequences.
   [[nodiscard]] bool shown_as_matrix(const RunSpec& run) const {
-    if (run.config.candidates != Candidates::all || run.config.sequence_length == 0) return false;
+    const auto whole = [](const RunSpec& each) {
+      return each.config.candidates == Candidates::all && each.config.sequence_length > 0;
+    };
+    if (!whole(run)) return false;
     const auto same = [&](const RunSpec& other) {
-      return std::tie(other.method, other.pair) == std::tie(run.method, run.pair) &&
+      return whole(other) && std::tie(other.method, other.pair) == std::tie(run.method, run.pair) &&
              experiment_.descriptors[other.descriptor].name ==
                  experiment_.descriptors[run.descriptor].name;
     };
     return &*std::ranges::find_if(experiment_.runs, same) == &run;
   }
 
-  [[nodiscard]] std::vector<Setting> conditions(std::size_t threads) const {
+  /// Results may be kept from other calls: what they were matched by is what they say.
+  [[nodiscard]] std::vector<Setting> conditions(const std::vector<Result>& results) const {
+    std::set<std::string> how;
+    for (const Result& result : results) {
+      how.insert(result.made_by +
+                 (result.alone ? ", one run at a time" : ", runs at once: seconds do not compare"));
+    }
     std::vector<Setting> all{
-        {"program and machine", program::condition_line()},
-        {"matched", experiment_.timed || threads == 1
-                        ? "one run at a time, on one core"
-                        : fmt::format("{} runs at once, one core each: "
-                                      "seconds are not comparable",
-                                      threads)},
+        {"matched by", fmt::format("{}", fmt::join(how, "; and "))},
         {"written", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};
     for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
       if (!kept_frames_[i]) continue;
@@ -235,6 +248,7 @@ class Runner {
   const Experiment& experiment_;
   std::filesystem::path folder_;
   DescribedDrives drives_;
+  bool alone_ = false;                                  // no run beside another
   std::vector<std::optional<KeptFrames>> kept_frames_;  // of each pair that leaves some out
 };
 
@@ -247,7 +261,7 @@ void run_experiment(const Experiment& experiment, const std::filesystem::path& f
   runner.check(faults);
   program::refuse(std::move(faults));
   runner.run(threads);
-  write_report(runner.report(threads), folder);
+  write_report(runner.report(), folder);
 }
 
 }  // namespace seqloop::experiment

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "seqloop/drives.hpp"
+#include "seqloop/matcher_settings.hpp"
+
 namespace seqloop::experiment {
 namespace {
 
@@ -13,8 +16,16 @@ std::string plain(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
   if (const auto* decimal = node.as_floating_point()) return fmt::format("{}", decimal->get());
-  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   return {};
+}
+
+/// What a value in `where` stands for: a flag is written in two ways.
+std::vector<std::string> meant(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) {
+    return flag->get() ? std::vector<std::string>{"true", "on"}
+                       : std::vector<std::string>{"false", "off"};
+  }
+  return {plain(node)};
 }
 
 }  // namespace
@@ -83,6 +94,20 @@ void Section::set(const program::OptionTable& options,
   }
 }
 
+void Section::check_setting(const std::string& name) const {
+  Names known{"pair", "method", "descriptor", "algorithm", "kind"};
+  program::MatcherSettings matcher;
+  program::DriveSettings drive;
+  program::OptionTable options;
+  add_matcher_options(options, matcher);
+  add_drive_options(options, drive);
+  for (const program::Option& option : options.options()) known.push_back(option.name);
+  if (std::ranges::find(known, name) != known.end()) return;
+  const std::string meant = program::nearest(name, known);
+  refuse("'" + name + "' is no setting of a method or a descriptor",
+         meant.empty() ? "" : "did you mean '" + meant + "'?");
+}
+
 std::vector<Filter> Section::filters() const {
   const toml::node* node = table_.get("where");
   if (node == nullptr) return {};
@@ -94,11 +119,15 @@ std::vector<Filter> Section::filters() const {
   std::vector<Filter> filters;
   for (const auto& [key, value] : *where) {
     Filter filter{std::string(key.str()), {}};
+    const auto add = [&](const toml::node& each) {
+      for (std::string& text : meant(each)) filter.values.push_back(std::move(text));
+    };
     if (const toml::array* list = value.as_array()) {
-      for (const toml::node& element : *list) filter.values.push_back(plain(element));
+      for (const toml::node& element : *list) add(element);
     } else {
-      filter.values.push_back(plain(value));
+      add(value);
     }
+    check_setting(filter.name);
     filters.push_back(std::move(filter));
   }
   return filters;

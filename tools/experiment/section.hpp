@@ -46,6 +46,9 @@ class Section {
   void set(const program::OptionTable& options, const std::vector<program::WrittenOption>& written,
            const std::vector<Setting>& chosen) const;
 
+  /// Refuses a name that no result can have a value under.
+  void check_setting(const std::string& name) const;
+
   /// The table `where`: what a figure or a table shows.
   [[nodiscard]] std::vector<Filter> filters() const;
 

@@ -39,6 +39,9 @@ Figure read_figure(const Section& section) {
     section.refuse("'" + kind + "' is neither precision-recall nor measure");
   }
   if (!figure.y.empty()) check_column(section, figure.y);
+  if (!figure.panel.empty()) section.check_setting(figure.panel);
+  if (!figure.x.empty()) section.check_setting(figure.x);
+  for (const std::string& name : figure.line) section.check_setting(name);
   return figure;
 }
 
@@ -54,6 +57,8 @@ Table read_table(const Section& section) {
   table.where = section.filters();
   if (table.rows.empty() || table.values.empty()) section.refuse("a table needs rows and values");
   for (const std::string& value : table.values) check_column(section, value);
+  for (const std::string& name : table.rows) section.check_setting(name);
+  for (const std::string& name : table.columns) section.check_setting(name);
   return table;
 }
 

@@ -39,6 +39,8 @@ void add_speed_ups(const Experiment& experiment, std::vector<Result>& results) {
     });
     if (full == runs.end()) continue;
     const Result& whole = results[static_cast<std::size_t>(full - runs.begin())];
+    const bool comparable = whole.alone && results[i].alone && whole.made_by == results[i].made_by;
+    if (!comparable) continue;
     results[i].speed_up = whole.seconds / results[i].seconds;
   }
 }

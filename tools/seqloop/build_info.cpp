@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -21,6 +22,17 @@ std::string processor() {
 }  // namespace
 
 std::string version_line() { return "seqloop " SEQLOOP_VERSION " (" SEQLOOP_COMMIT ")"; }
+
+std::string program_state() {
+  const std::string version = version_line();
+  const bool exact =
+      version.find("dirty") == std::string::npos && version.find("unknown") == std::string::npos;
+  if (exact) return version;
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto written = std::filesystem::last_write_time(self, error).time_since_epoch().count();
+  return fmt::format("{} {}", version, written);
+}
 
 std::string condition_line() {
   return fmt::format("{}, {} cores; compiler {}; {}", processor(),

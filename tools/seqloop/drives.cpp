@@ -42,6 +42,15 @@ void set_training(std::vector<std::filesystem::path>& drives, std::string_view t
   }
 }
 
+/// No more than can be learned from as many pictures and features as are taken.
+std::size_t parse_count_to(std::string_view text, std::size_t most) {
+  const std::size_t count = parse_count(text);
+  if (count > most) {
+    throw std::invalid_argument(std::to_string(count) + " is more than " + std::to_string(most));
+  }
+  return count;
+}
+
 }  // namespace
 
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
@@ -60,12 +69,14 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.add({"training", ValueKind::text,
                "drives to learn from, image folders or videos, with commas between",
                [&settings](std::string_view value) { set_training(settings.training, value); }});
-  options.add({"words", ValueKind::count, "words: size of the vocabulary [500]",
-               [&settings](std::string_view value) { settings.words = parse_count(value); }});
   options.add(
-      {"remove-components", ValueKind::count,
-       "Change Removal: principal components of the training drives to remove [0]",
-       [&settings](std::string_view value) { settings.remove_components = parse_count(value); }});
+      {"words", ValueKind::count, "words: size of the vocabulary [500]",
+       [&settings](std::string_view value) { settings.words = parse_count_to(value, 20'000); }});
+  options.add({"remove-components", ValueKind::count,
+               "Change Removal: principal components of the training drives to remove [0]",
+               [&settings](std::string_view value) {
+                 settings.remove_components = parse_count_to(value, 999);
+               }});
   options.add({"fps", ValueKind::number, "frames a second of an image folder [10]",
                [&settings](std::string_view value) {
                  settings.fps = parse_number(value);

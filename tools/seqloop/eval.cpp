@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -20,7 +22,7 @@ struct EvalSettings {
   std::filesystem::path matches;
   TruthSettings truth;
   std::size_t frames = 0;
-  evaluation::ThresholdOn threshold_on = evaluation::ThresholdOn::uniqueness;
+  std::optional<evaluation::ThresholdOn> threshold_on;  ///< uniqueness, when nobody says
   bool json = false;
   std::filesystem::path experiment;
   std::filesystem::path out;
@@ -48,8 +50,9 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
   if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
   if (!settings.matches.empty()) {
     collect(faults, [&] {
-      answers = evaluation::read_answers(evaluation::CsvTable::read(settings.matches),
-                                         settings.threshold_on);
+      answers = evaluation::read_answers(
+          evaluation::CsvTable::read(settings.matches),
+          settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
     });
   }
   evaluation::Truth truth = read_truth(settings.truth, faults);
@@ -96,15 +99,29 @@ void eval(const EvalSettings& settings, Faults faults) {
     return;
   }
   take_interruptions();
-  if (!settings.matches.empty()) {
-    faults.push_back({"matches", "an experiment makes its own", "leave out one of the two"});
+  const TruthSettings usual;
+  const bool truth_given = !settings.truth.file.empty() ||
+                           settings.truth.tolerance != usual.tolerance ||
+                           !settings.truth.reference_positions.empty() ||
+                           !settings.truth.query_positions.empty() || settings.truth.radius_m;
+  for (const auto& [flag, given] : {std::pair{"matches", !settings.matches.empty()},
+                                    {"truth, tolerance, positions, radius", truth_given},
+                                    {"frames", settings.frames > 0},
+                                    {"threshold-on", settings.threshold_on.has_value()},
+                                    {"json", settings.json}}) {
+    if (given) faults.push_back({flag, "an experiment says it in its file", "leave it out here"});
   }
   if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
   const experiment::Experiment experiment =
       experiment::read_experiment(settings.experiment, settings.data, faults);
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  run_experiment(experiment, settings.out, settings.jobs > 0 ? settings.jobs : cores,
-                 std::move(faults));
+  try {
+    run_experiment(experiment, settings.out, settings.jobs > 0 ? settings.jobs : cores,
+                   std::move(faults));
+  } catch (const std::exception&) {
+    if (!interrupted()) throw;
+    throw std::runtime_error("interrupted: what is done is kept, and the same command goes on");
+  }
   say("the report is {}", (settings.out / "index.html").string());
 }
 

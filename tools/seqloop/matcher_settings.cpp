@@ -53,7 +53,11 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.text("method", settings.method,
                "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence");
   options.flag("paper", settings.paper, "follow the paper to the letter");
-  options.count("ds", config.sequence_length, "sequence length, frames [20]");
+  options.add(
+      {"ds", ValueKind::count, "sequence length, frames [20]", [&settings](std::string_view value) {
+         settings.config.sequence_length = parse_count(value);
+         settings.ds_given = true;
+       }});
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
   options.count("rwindow", config.rwindow, "rows around the best that are no rivals [10]");
@@ -108,6 +112,8 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
   }
   if (settings.method == "single") {
     config.sequence_length = 0;
+    if (settings.ds_given)
+      faults.push_back({"ds", "single images are no sequence", "leave ds out"});
   } else if (config.sequence_length == 0) {
     faults.push_back({"ds", "0 frames are no sequence", "take --method single, or 1 or more"});
   }

@@ -14,6 +14,7 @@ struct MatcherSettings {
   MatcherConfig config;
   std::string method;
   bool paper = false;
+  bool ds_given = false;
   std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says
   std::optional<bool> standardise;       ///< on unless --paper or SeqSLAM, when nobody says
   std::optional<bool> enhance;           ///< on for SeqSLAM alone, when nobody says

@@ -78,4 +78,12 @@ opencv::ModelSettings with_settings_beside(opencv::ModelSettings model,
   return model;
 }
 
+std::vector<std::filesystem::path> model_files(const opencv::ModelSettings& model,
+                                               const std::vector<std::string>& given) {
+  std::vector<std::filesystem::path> files{model.model, settings_beside(model.model),
+                                           with_settings_beside(model, given).config_model};
+  std::erase(files, std::filesystem::path());
+  return files;
+}
+
 }  // namespace seqloop::program

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,10 @@ namespace seqloop::program {
 /// Throws SetupError with every fault of the file.
 [[nodiscard]] opencv::ModelSettings with_settings_beside(opencv::ModelSettings model,
                                                          const std::vector<std::string>& given);
+
+/// Every file that says what a model is: the model, its settings file, its second file.
+/// Throws SetupError as above.
+[[nodiscard]] std::vector<std::filesystem::path> model_files(const opencv::ModelSettings& model,
+                                                             const std::vector<std::string>& given);
 
 }  // namespace seqloop::program

@@ -129,6 +129,12 @@ class Reader {
     } else {
       add(found, name, node);
     }
+    for (std::size_t i = 1; i < found.values.size(); ++i) {
+      if (std::find(found.values.begin(), found.values.begin() + static_cast<std::ptrdiff_t>(i),
+                    found.values[i]) != found.values.begin() + static_cast<std::ptrdiff_t>(i)) {
+        faults_.push_back({found.where, "'" + name + "' has " + found.values[i] + " twice"});
+      }
+    }
     if (list != nullptr && list->empty())
       faults_.push_back({found.where, "'" + name + "' is empty"});
     if (!found.values.empty()) written.push_back(std::move(found));
