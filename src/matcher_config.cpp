@@ -57,10 +57,11 @@ Faults validate(const MatcherConfig& config) {
                       "take 2 or more, or switch enhance off"});
   }
   if (config.enhance && config.use == Use::close_loops && config.exclude <= config.rwindow / 2) {
-    faults.push_back(
-        {"exclude", std::to_string(config.exclude) + " is not above half of rwindow, " +
-                        std::to_string(config.rwindow / 2) +
-                        ": a difference would be enhanced by places that are still to come"});
+    faults.push_back({"exclude",
+                      std::to_string(config.exclude) + " is not above half of rwindow, " +
+                          std::to_string(config.rwindow / 2) +
+                          ": a difference would be enhanced by places that are still to come",
+                      "raise exclude, or lower rwindow"});
   }
   check_range(faults, "k", config.k, 1, 1'000);
   check_range(faults, "initial-k", config.initial_k, 1, 1'000);

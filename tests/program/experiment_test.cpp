@@ -162,6 +162,9 @@ TEST_F(Experiments, GoOnWhereTheyWere) {
   EXPECT_EQ(expect_done().err.find("matching"), std::string::npos) << "nothing is left to do";
   EXPECT_EQ(test::read_all(file("out/results.csv")), page);
 
+  const auto elsewhere = run("eval --experiment e.toml --out ./out/../out");
+  EXPECT_EQ(elsewhere.err.find("matching"), std::string::npos) << "the folder is the same";
+
   std::vector<std::filesystem::path> kept;
   for (const auto& entry : std::filesystem::directory_iterator(file("out/runs"))) {
     if (entry.path().extension() == ".json") kept.push_back(entry.path());
@@ -296,6 +299,26 @@ ds = 4
   expect_done();
   EXPECT_LT(number(0, "correct"), 10U);
   EXPECT_EQ(number(1, "places"), 35U);
+}
+
+TEST_F(Experiments, KeepRunsOfAnyNameApart) {
+  std::string text = drives;
+  for (const char* name : {"öü", "ü"}) {
+    text +=
+        fmt::format("[[pair]]\nname = \"{}\"\nreference = \"first\"\nquery = \"second\"\n", name);
+  }
+  for (const char* name : {"ä", "äö"}) {
+    text += fmt::format(
+        "[[method]]\nname = \"{}\"\nmethod = \"seqcnnslam\"\n"
+        "descriptor = \"gradients\"\nds = 4\n",
+        name);
+  }
+  write_experiment(text);
+  expect_done();
+  const std::string results = test::read_all(file("out/results.csv"));
+  for (const char* row : {"öü,ä,", "öü,äö,", "\nü,ä,", "\nü,äö,"}) {
+    EXPECT_NE(results.find(row), std::string::npos) << row;
+  }
 }
 
 TEST_F(Experiments, LeaveDarkFramesOutAndSayHowMany) {

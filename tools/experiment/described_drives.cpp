@@ -72,7 +72,7 @@ void DescribedDrives::check(Faults& faults) {
   for (const Wanted& each : wanted) {
     const std::string& descriptor = experiment_.descriptors[each.descriptor].name;
     const std::string all =
-        program::program_state() + states[each.drive] + made_from[each.descriptor];
+        program::program_state() + "\n" + states[each.drive] + "\n" + made_from[each.descriptor];
     files_[each] = folder_ / fmt::format("{}--{}--{}.npy", file_name(each.drive),
                                          file_name(descriptor), fingerprint(all));
   }

@@ -213,14 +213,21 @@ class Reader {
         section.references("descriptor", "descriptor", names_of(experiment_.descriptors));
     const Names pairs = section.has("pair") ? section.references("pair", "pair", pairs_) : pairs_;
     if (!section.has("descriptor")) section.refuse("method '" + name + "' has no descriptor");
-    for (std::string& setting : section.names("best-of")) {
+    const Names best_of = section.names("best-of");
+    if (best_of.size() > 1) section.refuse("'best-of' is one setting");
+    for (const std::string& setting : best_of) {
       section.check_setting(setting);
-      experiment_.best_of.push_back({name, std::move(setting)});
+      experiment_.best_of.push_back({name, setting});
     }
     program::MatcherSettings none;
     OptionTable known;
     add_matcher_options(known, none);
     const auto written = section.written(known, {"name", "descriptor", "pair", "best-of"});
+    for (const std::string& setting : best_of) {
+      if (!is_swept(setting, written, descriptors)) {
+        section.refuse("'best-of': '" + setting + "' has one value only", "give it a list");
+      }
+    }
     std::set<std::string> told;  // what is wrong with one combination is wrong with others
     for (const std::vector<Setting>& chosen : section.combinations(written)) {
       program::MatcherSettings matcher;
@@ -232,6 +239,20 @@ class Reader {
         if (told.insert(why).second) section.refuse(why, fault.remedy);
       }
     }
+  }
+
+  [[nodiscard]] bool is_swept(const std::string& setting,
+                              const std::vector<program::WrittenOption>& written,
+                              const Names& descriptors) const {
+    const auto by_method = [&](const program::WrittenOption& option) {
+      return option.option->name == setting && option.values.size() > 1;
+    };
+    const auto by_descriptor = [&](const DescriptorSpec& descriptor) {
+      return has(descriptors, descriptor.name) &&
+             std::ranges::find(descriptor.swept, setting, &Setting::name) != descriptor.swept.end();
+    };
+    return std::ranges::any_of(written, by_method) ||
+           std::ranges::any_of(experiment_.descriptors, by_descriptor);
   }
 
   /// One run for each of the pairs and each of the descriptors.

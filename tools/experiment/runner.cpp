@@ -28,6 +28,16 @@
 namespace seqloop::experiment {
 namespace {
 
+/// Descriptors that were kept. Throws SetupError: somebody damaged them.
+files::Matrix read_kept(const std::filesystem::path& file) {
+  try {
+    return files::read_npy(file);
+  } catch (const SetupError& error) {
+    throw SetupError({file.string(), error.faults().front().why,
+                      "delete it, and the same command makes it again"});
+  }
+}
+
 class Runner {
  public:
   Runner(const Experiment& experiment, std::filesystem::path folder)
@@ -103,6 +113,11 @@ class Runner {
       jobs.push_back({"dark and standing frames of " + pair.name, frames, [this, &pair, i] {
                         kept_frames_[i] = leave_out(*drives_.open(pair.reference),
                                                     *drives_.open(pair.query), *pair.leave_out);
+                        if (kept_frames_[i]->frames.empty()) {
+                          throw SetupError({pair.where,
+                                            "pair '" + pair.name + "' has no frame left",
+                                            "lower dark-below or standing-below"});
+                        }
                       }});
     }
     return jobs;
@@ -170,7 +185,7 @@ class Runner {
   [[nodiscard]] DescribedPair read(const RunSpec& run) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
     const auto read_drive = [&](const std::string& drive) {
-      files::Matrix rows = files::read_npy(drives_.file(drive, run.descriptor));
+      files::Matrix rows = read_kept(drives_.file(drive, run.descriptor));
       const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
       if (!kept) return rows;
       for (std::size_t i = 0; i < kept->frames.size(); ++i) {
@@ -190,18 +205,26 @@ class Runner {
   /// Where a run's result is kept; the name tells everything that it depends on.
   [[nodiscard]] std::filesystem::path file(const RunSpec& run, const char* extension) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
-    std::string from = program::program_state() + text_of(run.settings) + run.method + pair.name +
-                       drives_.file(pair.query, run.descriptor).string() + text_of(pair.settings) +
-                       (experiment_.timed ? "timed" : "");
-    if (!pair.reference.empty()) from += drives_.file(pair.reference, run.descriptor).string();
-    if (!pair.truth.file.empty() && !by_identity(pair.truth)) from += state_of(pair.truth.file);
-    for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {
-      if (!path.empty()) from += state_of(path);
+    std::vector<std::string> from{program::program_state(),
+                                  text_of(run.settings),
+                                  run.method,
+                                  pair.name,
+                                  text_of(pair.settings),
+                                  drives_.file(pair.query, run.descriptor).filename().string(),
+                                  experiment_.timed ? "timed" : "",
+                                  std::to_string(static_cast<int>(experiment_.threshold_on))};
+    if (!pair.reference.empty()) {
+      from.push_back(drives_.file(pair.reference, run.descriptor).filename().string());
     }
-    from += std::to_string(static_cast<int>(experiment_.threshold_on));
+    if (!pair.truth.file.empty() && !by_identity(pair.truth)) {
+      from.push_back(state_of(pair.truth.file));
+    }
+    for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {
+      if (!path.empty()) from.push_back(state_of(path));
+    }
     return folder_ / "runs" /
            fmt::format("{}--{}--{}.{}", file_name(pair.name), file_name(run.method),
-                       fingerprint(from), extension);
+                       fingerprint(fmt::format("{}", fmt::join(from, "\n"))), extension);
   }
 
   [[nodiscard]] bool is_done(const RunSpec& run) const {

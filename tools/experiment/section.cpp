@@ -56,6 +56,8 @@ Names Section::references(const char* key, const char* kind, const Names& known)
   Names found;
   for (std::string& name : names(key)) {
     if (std::ranges::find(known, name) != known.end()) {
+      const bool twice = std::ranges::find(found, name) != found.end();
+      if (twice) refuse(fmt::format("'{}' names '{}' twice", key, name));
       found.push_back(std::move(name));
       continue;
     }

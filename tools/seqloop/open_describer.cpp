@@ -119,10 +119,11 @@ void suit_descriptor(DriveSettings& settings, Difference difference, Faults& fau
     settings.descriptor = "patches";
   }
   if (patches != (kind_of(settings) == "patches")) {
-    faults.push_back({"descriptor",
-                      kind_of(settings) + " cannot be compared by " +
-                          (patches ? "mean absolute difference" : "Euclidean distance"),
-                      "patches go with --method seqslam, all others with other methods"});
+    faults.push_back(
+        {"descriptor",
+         kind_of(settings) + " cannot be compared by " +
+             (patches ? "mean absolute difference" : "Euclidean distance"),
+         "patches go with --method seqslam or --difference mean-absolute, all others do not"});
   }
 }
 

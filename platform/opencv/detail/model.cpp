@@ -99,6 +99,11 @@ Model load_model(const std::filesystem::path& path, const std::filesystem::path&
   Faults faults;
   check_exists(path, "model", faults);
   if (!config.empty()) check_exists(config, "model's configuration", faults);
+  if (path.extension() == ".caffemodel" && config.empty()) {
+    faults.push_back({path.string(),
+                      "its second file, which says what layers there are, is missing",
+                      "give its .prototxt as the model's configuration (--config-model)"});
+  }
   if (!faults.empty()) throw SetupError(std::move(faults));
 
   if (path.extension() == ".onnx") {
