@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "experiment/experiment.hpp"
@@ -40,7 +41,9 @@ class DescribedDrives {
   struct Wanted {
     std::string drive;
     std::size_t descriptor;
-    auto operator<=>(const Wanted&) const = default;
+    bool operator<(const Wanted& other) const {
+      return std::tie(drive, descriptor) < std::tie(other.drive, other.descriptor);
+    }
   };
 
   void describe(const Wanted& wanted) const;

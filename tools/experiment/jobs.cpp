@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -22,7 +23,7 @@ double seconds_since(Clock::time_point start) {
 
 std::string duration(double seconds) {
   constexpr double longest = 1e9;
-  const auto whole = static_cast<long>(std::clamp(seconds, 0.0, longest) + 0.5);
+  const auto whole = std::lround(std::clamp(seconds, 0.0, longest));
   return whole < 100 ? fmt::format("{} s", whole) : fmt::format("{} min", (whole + 30) / 60);
 }
 

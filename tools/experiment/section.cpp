@@ -73,6 +73,7 @@ std::vector<Setting> Section::set_all(const program::OptionTable& options,
                                       const Names& others) const {
   const auto found = read_options(table_, file_, options, {.ignored = others}, faults_);
   std::vector<Setting> settings;
+  settings.reserve(found.size());
   for (const program::WrittenOption& each : found) {
     settings.push_back({each.option->name, each.values.front()});
   }

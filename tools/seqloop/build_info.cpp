@@ -24,7 +24,7 @@ std::string processor() {
 std::string version_line() { return "seqloop " SEQLOOP_VERSION " (" SEQLOOP_COMMIT ")"; }
 
 std::string program_state() {
-  const std::string version = version_line();
+  std::string version = version_line();
   const bool exact =
       version.find("dirty") == std::string::npos && version.find("unknown") == std::string::npos;
   if (exact) return version;
