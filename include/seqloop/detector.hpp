@@ -63,8 +63,8 @@ class Detector {
     return slices_.query(slices_.frames() - 1);
   }
 
-  /// The newest frame's column of the difference matrix: [capacity.places], below zero where nothing
-  /// was computed (everywhere, where not all rows are candidates, until a line needs it).
+  /// The newest frame's column of the difference matrix: [capacity.places], below zero where
+  /// nothing was computed (everywhere, where not all rows are candidates, until a line needs it).
   [[nodiscard]] std::span<const float> newest_column() const noexcept {
     return slices_.column(slices_.frames() - 1);
   }
