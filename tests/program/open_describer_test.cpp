@@ -5,19 +5,19 @@
 #include <thread>
 
 #include "expect_setup_error.hpp"
-#include "platform/picture_list.hpp"
+#include "made_drive.hpp"
 #include "seqloop/drives.hpp"
 
 namespace seqloop::program {
 namespace {
 
-using test::PictureList;
+using test::MadeDrive;
 
 /// What describers learned from pictures of `seed` say of one more.
 std::vector<float> described(const DriveSettings& settings, std::uint64_t seed) {
   std::vector<cv::Mat> pictures;
   for (std::uint64_t i = 0; i < 5; ++i) pictures.push_back(test::textured(160, 120, seed + i));
-  PictureList drive(pictures);
+  MadeDrive drive(pictures);
   const std::array<FrameSource*, 1> training{&drive};
   const std::unique_ptr<Describer> describer = open_describer(settings, training);
   std::vector<float> descriptor(describer->size());

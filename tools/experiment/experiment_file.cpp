@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "experiment/experiment.hpp"
@@ -64,10 +65,10 @@ class Reader {
     options.text("threshold-on", threshold, "");
     Section(root, file_, faults_)
         .set_all(options, {"drive", "descriptor", "pair", "method", "figure", "table"});
-    if (threshold == "score") {
-      experiment_.threshold_on = evaluation::ThresholdOn::score;
-    } else if (threshold != "uniqueness") {
-      faults_.push_back({"threshold-on", "'" + threshold + "' is neither uniqueness nor score"});
+    try {
+      experiment_.threshold_on = program::parse_threshold(threshold);
+    } catch (const std::invalid_argument& why) {
+      faults_.push_back({"threshold-on", why.what()});
     }
     const std::filesystem::path file(file_);
     if (data_.empty()) data_ = file.parent_path() / data;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <map>
 #include <set>
 #include <tuple>
 
@@ -22,7 +21,6 @@
 #include "seqloop/build_info.hpp"
 #include "seqloop/drive_length.hpp"
 #include "seqloop/outputs.hpp"
-#include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::experiment {

@@ -30,12 +30,6 @@ struct EvalSettings {
   std::size_t jobs = 0;  ///< 0: as many as there are cores
 };
 
-evaluation::ThresholdOn parse_threshold(std::string_view text) {
-  if (text == "uniqueness") return evaluation::ThresholdOn::uniqueness;
-  if (text == "score") return evaluation::ThresholdOn::score;
-  throw std::invalid_argument("'" + std::string(text) + "' is neither uniqueness nor score");
-}
-
 /// Identity needs to know how many queries there are: as many as asked, or as the matches reach.
 std::uint64_t identity_frames(const EvalSettings& settings,
                               const std::vector<evaluation::Answer>& answers) {

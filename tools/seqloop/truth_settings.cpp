@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <utility>
 
 #include "seqloop/verb.hpp"
@@ -77,6 +78,12 @@ evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
     });
   }
   return truth;
+}
+
+evaluation::ThresholdOn parse_threshold(std::string_view text) {
+  if (text == "uniqueness") return evaluation::ThresholdOn::uniqueness;
+  if (text == "score") return evaluation::ThresholdOn::score;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither uniqueness nor score");
 }
 
 std::string how_near(const TruthSettings& settings) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "evaluation/measures.hpp"
 #include "evaluation/truth.hpp"
 #include "seqloop/options.hpp"
 
@@ -27,6 +28,9 @@ void add_truth_options(OptionTable& options, TruthSettings& settings);
 
 /// The truth, unless it is identity, for which somebody has to say how long it is. Adds faults.
 [[nodiscard]] evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults);
+
+/// What `--threshold-on` says. Throws std::invalid_argument: why not.
+[[nodiscard]] evaluation::ThresholdOn parse_threshold(std::string_view text);
 
 /// How far off a right answer may be, in words.
 [[nodiscard]] std::string how_near(const TruthSettings& settings);

@@ -12,7 +12,7 @@ cv::Mat PictureScaler::scale(const Image& image) {
     cv::cvtColor(picture, gray_picture_, cv::COLOR_BGR2GRAY);
     picture = gray_picture_;
   }
-  if (picture.size() != size_) {
+  if (!size_.empty() && picture.size() != size_) {
     const bool shrinks = picture.cols >= size_.width && picture.rows >= size_.height;
     cv::resize(picture, resized_, size_, 0.0, 0.0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
     picture = resized_;

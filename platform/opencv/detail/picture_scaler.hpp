@@ -9,7 +9,7 @@ namespace seqloop::opencv {
 /// Brings pictures to one size, reusing its memory from picture to picture.
 class PictureScaler {
  public:
-  /// @param gray colour becomes grey
+  /// @param size empty: every picture keeps its own   @param gray colour becomes grey
   PictureScaler(const cv::Size& size, bool gray) : size_(size), gray_(gray) {}
 
   /// Shrinks by averaging (INTER_AREA) and enlarges linearly. Colour becomes grey before the size
