@@ -13,6 +13,7 @@ namespace seqloop {
 enum class Grab : std::uint8_t {
   frame,       ///< a frame with a picture or a descriptor
   unreadable,  ///< the frame is there but cannot be read; `Frame::fault` says why
+  silent,      ///< a live source: no frame came in time; `Frame::fault` says why. Ask again
   end          ///< the drive is over
 };
 
@@ -27,8 +28,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// Takes the next frame, in order.
-  /// @param frame overwritten; its index and time are right for `unreadable` too.
-  /// Errors: none thrown. Allocates: may (decoders do).
+  /// @param frame overwritten; its index and time are right for `unreadable` too, and mean nothing
+  /// for `silent`. Errors: none thrown. Allocates: may (decoders do).
   [[nodiscard]] virtual Grab grab(Frame& frame) noexcept = 0;
 
   /// Frames in the whole drive, where that is known beforehand.

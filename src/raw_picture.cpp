@@ -1,0 +1,41 @@
+#include "seqloop/raw_picture.hpp"
+
+namespace seqloop {
+
+std::string_view name(RawFormat format) noexcept {
+  switch (format) {
+    case RawFormat::gray8:
+      return "GREY";
+    case RawFormat::bgr8:
+      return "BGR3";
+    case RawFormat::rgb8:
+      return "RGB3";
+    case RawFormat::yuyv:
+      return "YUYV";
+    case RawFormat::uyvy:
+      return "UYVY";
+    case RawFormat::nv12:
+      return "NV12";
+    case RawFormat::yu12:
+      return "YU12";
+    case RawFormat::mjpg:
+      return "MJPG";
+  }
+  return "?";
+}
+
+std::size_t bytes_of(RawFormat format, std::size_t stride, int height) noexcept {
+  const auto rows = static_cast<std::size_t>(height > 0 ? height : 0);
+  switch (format) {
+    case RawFormat::nv12:
+      return stride * (rows + (rows + 1) / 2);
+    case RawFormat::yu12:
+      return stride * rows + 2 * (stride / 2) * ((rows + 1) / 2);
+    case RawFormat::mjpg:
+      return 0;
+    default:
+      return stride * rows;
+  }
+}
+
+}  // namespace seqloop
