@@ -38,7 +38,8 @@ CandidateRanges::CandidateRanges(Arena& arena, const MatcherConfig& config)
       runs_(arena.take<CandidateRun>("candidate runs", std::max<std::size_t>(k_, 1))) {}
 
 std::span<const CandidateRun> CandidateRanges::choose(std::size_t rows) noexcept {
-  full_search_ = kind_ == Candidates::all || ranked_count_ == 0 || matched_frames_ % reinit_ == 0;
+  full_search_ =
+      kind_ == Candidates::all || ranked_count_ == 0 || rows == 0 || matched_frames_ % reinit_ == 0;
   run_count_ = 0;
   if (full_search_) {
     if (rows > 0) runs_[run_count_++] = {0, rows};
@@ -47,7 +48,7 @@ std::span<const CandidateRun> CandidateRanges::choose(std::size_t rows) noexcept
   // Algorithm 4: [T(k) - Num/2, T(k) + Num/2] for k = 1 .. K, clipped to the map, united.
   const std::size_t ranges = std::min(k_, ranked_count_);
   for (std::size_t i = 0; i < ranges; ++i) {
-    const std::size_t row = ranked_[i].row;
+    const std::size_t row = std::min(ranked_[i].row, rows - 1);
     runs_[i] = {row - std::min(row, half_range_), std::min(row + half_range_ + 1, rows)};
   }
   std::ranges::sort(runs_.first(ranges), {}, &CandidateRun::first);
@@ -71,6 +72,19 @@ void CandidateRanges::update(std::span<const float> scores, std::optional<std::s
   if (kind_ == Candidates::adaptive && !full_search_) adapt_k(*match, change_degree);
   rank(scores);
   ++matched_frames_;
+}
+
+void CandidateRanges::skip(std::uint64_t frames) noexcept {
+  for (ScoredRow& ranked : ranked_.first(ranked_count_)) {
+    ranked.row += static_cast<std::size_t>(frames);
+  }
+}
+
+void CandidateRanges::restart() noexcept {
+  ranked_count_ = 0;
+  recorded_ = 0;
+  recorded_maximum_ = 0;
+  if (kind_ == Candidates::adaptive) k_ = initial_k_;
 }
 
 void CandidateRanges::adapt_k(std::size_t match, double change_degree) noexcept {

@@ -66,14 +66,18 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   const std::size_t window = config.sequence_length + 1;
   const std::size_t lines =
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();
-  // Where all rows are candidates, a column is computed as its frame arrives; in a growing map the
-  // older columns may each have one more row to look at. Elsewhere a full search finds the whole
+  // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
+  // column that repeats another (`skip`) has as many rows more to look at as it is younger, and
+  // columns that reach the newest places grow with them. Elsewhere a full search finds the whole
   // window empty.
   std::size_t distances = capacity.places;
   if (config.candidates != Candidates::all) {
     distances *= window;
   } else if (config.use == Use::close_loops) {
-    distances += config.sequence_length;
+    const std::size_t ds = config.sequence_length;
+    const std::size_t reach = ds / 2 + (config.enhance ? config.rwindow / 2 : 0);
+    const std::size_t growing = reach - std::min(reach, config.exclude);
+    distances += ds * (ds + 1) / 2 + (ds + growing) * growing;
   }
   if (config.candidates == Candidates::adaptive) distances += ChangeDegree::reach;
   return {capacity.places, distances, capacity.places * lines};
@@ -111,8 +115,8 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
     report.map_full = !map_->add(newest_query().first(map_->descriptor_size()));
   report.work.distances = fill_columns();
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
-  if (report.newest >= after_centre) report.frame = report.newest - after_centre;
-  if (report.newest < config_.sequence_length) return report;
+  if (report.newest >= window_began_ + after_centre) report.frame = report.newest - after_centre;
+  if (report.newest < window_began_ + config_.sequence_length) return report;
 
   const std::uint64_t oldest = report.newest - config_.sequence_length;
   const std::size_t rows = rows_searched(*report.frame);
@@ -134,6 +138,28 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   }
   ranges_.update(search_.scores(), best ? std::optional(best->row) : std::nullopt, change);
   return report;
+}
+
+void Detector::skip(std::uint64_t frames) noexcept {
+  if (frames == 0 || slices_.frames() == 0) return;
+  if (frames > config_.sequence_length) {
+    restart();
+    return;
+  }
+  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    slices_.repeat();
+    if (config_.use == Use::close_loops) {
+      static_cast<void>(map_->add(newest_query().first(map_->descriptor_size())));
+    }
+  }
+  ranges_.skip(frames);
+  change_degree_ = {};
+}
+
+void Detector::restart() noexcept {
+  window_began_ = slices_.frames();
+  ranges_.restart();
+  change_degree_ = {};
 }
 
 /// Puts the newest frame's descriptor into its column: standardised by what the drive has shown so
@@ -181,7 +207,8 @@ std::size_t Detector::complete_rows() const noexcept {
 std::size_t Detector::fill_columns() noexcept {
   if (config_.candidates != Candidates::all) return 0;
   const std::uint64_t newest = slices_.frames() - 1;
-  std::uint64_t frame = newest - std::min<std::uint64_t>(newest, config_.sequence_length);
+  std::uint64_t frame =
+      std::max(window_began_, newest - std::min<std::uint64_t>(newest, config_.sequence_length));
   const std::size_t complete = complete_rows();
   std::size_t computed = 0;
   for (; frame <= newest; ++frame) {

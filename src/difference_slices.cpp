@@ -24,7 +24,14 @@ std::span<float> DifferenceSlices::push() noexcept {
   const std::uint64_t frame = frames_++;
   differences_.begin(frame);
   if (enhance_) enhanced_.begin(frame);
-  return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
+  return descriptor(frame);
+}
+
+void DifferenceSlices::repeat() noexcept {
+  const std::uint64_t frame = frames_++;
+  std::ranges::copy(query(frame - 1), descriptor(frame).begin());
+  differences_.repeat(frame);
+  if (enhance_) enhanced_.repeat(frame);
 }
 
 float DifferenceSlices::between(std::uint64_t a, std::uint64_t b) const noexcept {

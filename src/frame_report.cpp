@@ -4,6 +4,8 @@ namespace seqloop {
 
 std::string_view name(Gate gate) noexcept {
   switch (gate) {
+    case Gate::no_frame:
+      return "no_frame";
     case Gate::frame_error:
       return "frame_error";
     case Gate::warming_up:

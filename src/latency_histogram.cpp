@@ -16,6 +16,12 @@ void LatencyHistogram::add(Nanoseconds duration) noexcept {
   maximum_ = std::max(maximum_, Nanoseconds(static_cast<Nanoseconds::rep>(value)));
 }
 
+Nanoseconds LatencyHistogram::longest_in(std::size_t bucket) noexcept {
+  const std::size_t shift = bucket < 2 * steps ? 0 : bucket / steps - 1;
+  const std::uint64_t next = (static_cast<std::uint64_t>(bucket - shift * steps) + 1) << shift;
+  return Nanoseconds(static_cast<Nanoseconds::rep>(next - 1));
+}
+
 Nanoseconds LatencyHistogram::quantile(double share) const noexcept {
   const auto wanted = static_cast<std::uint64_t>(
       std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_)));
@@ -23,9 +29,7 @@ Nanoseconds LatencyHistogram::quantile(double share) const noexcept {
   for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
     seen += buckets_[bucket];
     if (seen < wanted || seen == 0) continue;
-    const std::size_t shift = bucket < 2 * steps ? 0 : bucket / steps - 1;
-    const std::uint64_t next = (static_cast<std::uint64_t>(bucket - shift * steps) + 1) << shift;
-    return std::min(maximum_, Nanoseconds(static_cast<Nanoseconds::rep>(next - 1)));
+    return std::min(maximum_, longest_in(bucket));
   }
   return maximum_;
 }

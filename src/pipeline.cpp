@@ -1,16 +1,13 @@
 #include "seqloop/pipeline.hpp"
 
-#include <algorithm>
-
 namespace seqloop {
 
 Pipeline::Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
-                   std::size_t descriptor_size, Pace pace)
+                   std::size_t descriptor_size)
     : source_(&source),
       describer_(describer),
       detector_(&detector),
       clock_(&clock),
-      pace_(pace),
       descriptor_(descriptor_size) {}
 
 std::optional<ProcessedFrame> Pipeline::process() noexcept {
@@ -18,19 +15,16 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   const Nanoseconds began = clock_->now();
   const Grab grab = source_->grab(processed.frame);
   if (grab == Grab::end) return std::nullopt;
-  Nanoseconds grabbed = clock_->now();
-  processed.times.grab = grabbed - began;
-  if (pace_ == Pace::live) {
-    if (!start_) start_ = grabbed;
-    const std::chrono::duration<double> time(processed.frame.time_s);
-    const Nanoseconds due = *start_ + std::chrono::duration_cast<Nanoseconds>(time);
-    processed.times.late = std::max(grabbed - due, Nanoseconds(0));
-    clock_->sleep_until(due);
-    grabbed = clock_->now();
+  if (grab == Grab::silent) {
+    processed.report.gate = Gate::no_frame;
+    processed.fault = processed.frame.fault;
+    return processed;
   }
+  const Nanoseconds grabbed = clock_->now();
 
   const DescribedFrame seen = describe(grab, processed.frame, describer_, descriptor_);
   const Nanoseconds described = clock_->now();
+  detector_->skip(processed.frame.lost + processed.frame.dropped);
   processed.report = detector_->step(seen.descriptor);
   const Nanoseconds matched = clock_->now();
 
@@ -38,6 +32,8 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
     processed.fault = "its descriptor is all zero, not of unit length, or of the wrong size";
   }
+  processed.times.age = processed.frame.age;
+  processed.times.grab = grabbed - began - processed.frame.waited;
   processed.times.describe = described - grabbed;
   processed.times.match = matched - described;
   processed.times.total = processed.times.grab + (matched - grabbed);
@@ -46,7 +42,7 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
 
 DescribedFrame describe(Grab grab, const Frame& frame, Describer* describer,
                         std::span<float> buffer) noexcept {
-  if (grab == Grab::unreadable) return {{}, frame.fault};
+  if (grab != Grab::frame) return {{}, frame.fault};
   if (!frame.descriptor.empty()) return {frame.descriptor, {}};
   if (describer == nullptr) return {{}, "nothing is there to describe pictures with"};
   const Description description = describer->describe(frame.image, buffer);

@@ -41,6 +41,13 @@ class CandidateRanges {
   void update(std::span<const float> scores, std::optional<std::size_t> match,
               double change_degree) noexcept;
 
+  /// Frames went by unseen: the last frame's best rows are taken to lie so many rows further on,
+  /// as they do at velocity 1. Work: K.
+  void skip(std::uint64_t frames) noexcept;
+
+  /// Forgets the last frame: the next one searches all, K starts anew.
+  void restart() noexcept;
+
  private:
   struct ScoredRow {
     float score;

@@ -30,6 +30,14 @@ class ColumnRing {
     filled_to_[slot(frame)] = 0;
   }
 
+  /// Begins a frame's column as a copy of the one before it, what is not computed included.
+  /// @param frame above 0. Work: N copies. Allocates: never.
+  void repeat(std::uint64_t frame) noexcept {
+    if (slot(frame) == slot(frame - 1)) return;
+    std::ranges::copy(cells(frame - 1), cells(frame).begin());
+    filled_to_[slot(frame)] = filled_to_[slot(frame - 1)];
+  }
+
   /// Makes sure that the rows [first, last) are there.
   /// @param compute value >= 0 of a row
   /// @return how many had to be computed. Work: that many times `compute`. Allocates: never.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "seqloop/frame.hpp"
+#include "seqloop/picture_needs.hpp"
 
 namespace seqloop {
 
@@ -27,6 +28,9 @@ class Describer {
 
   /// Values in one descriptor, D.
   [[nodiscard]] virtual std::size_t size() const noexcept = 0;
+
+  /// What it makes of pictures; unless it says otherwise, it looks at all of them, in colour.
+  [[nodiscard]] virtual PictureNeeds needs() const noexcept { return {}; }
 
   /// @param image    any size; grey or BGR
   /// @param descriptor [D], written: unit L2 or zero, or as the describer says that its descriptors

@@ -57,6 +57,13 @@ class Detector {
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
+  /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds
+  /// of them are frames at which the scene stood still, so that trajectories keep their velocities;
+  /// closing loops, they become places. After more, what was seen before says nothing of now: none
+  /// of them is counted, and the window begins anew (`warming_up`).
+  /// Work: N + D copies a frame; no distances, no line-sums. Allocates: never.
+  void skip(std::uint64_t frames) noexcept;
+
   /// What the steps compared: the newest frame's descriptor, standardised if that is on.
   /// @return [padded_size(D)]; at least one step must have been made
   [[nodiscard]] std::span<const float> newest_query() const noexcept {
@@ -75,6 +82,7 @@ class Detector {
            ArenaMemory&& memory);
 
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
+  void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
   [[nodiscard]] std::size_t complete_rows() const noexcept;
   [[nodiscard]] std::size_t fill_columns() noexcept;
@@ -85,6 +93,7 @@ class Detector {
   ArenaMemory memory_;
   MatcherConfig config_;
   PlaceMap* map_;
+  std::uint64_t window_began_ = 0;  // the first frame that is matched together with the newest
   Trajectories trajectories_;
   RunningStatistics statistics_;
   DifferenceSlices slices_;

@@ -28,6 +28,10 @@ class DifferenceSlices {
   /// Work: N, to mark every difference as not computed. Allocates: never.
   [[nodiscard]] std::span<float> push() noexcept;
 
+  /// Takes another frame that is the same as the newest one; at least one must have been pushed.
+  /// Work: N + D copies. Allocates: never.
+  void repeat() noexcept;
+
   /// Frames pushed so far.
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
 
@@ -54,6 +58,10 @@ class DifferenceSlices {
   }
 
  private:
+  [[nodiscard]] std::span<float> descriptor(std::uint64_t frame) noexcept {
+    return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
+  }
+
   Difference kind_;
   bool enhance_;
   Contrast contrast_;

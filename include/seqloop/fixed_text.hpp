@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string_view>
 
@@ -24,6 +26,11 @@ class FixedText {
     const std::size_t taken = std::min(part.size(), capacity - size_);
     std::copy_n(part.begin(), taken, text_.begin() + static_cast<std::ptrdiff_t>(size_));
     size_ += taken;
+  }
+  void append_number(std::uint64_t number) noexcept {
+    std::array<char, 20> digits;  // as many as the largest has
+    const char* end = std::to_chars(digits.begin(), digits.end(), number).ptr;
+    append({digits.begin(), end});
   }
   void clear() noexcept { size_ = 0; }
 

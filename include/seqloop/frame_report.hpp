@@ -9,6 +9,7 @@ namespace seqloop {
 
 /// How far a frame came, in the order of the pipeline.
 enum class Gate : std::uint8_t {
+  no_frame,      ///< a live source brought no frame in time, or lost its camera
   frame_error,   ///< the newest frame could not be read or described
   warming_up,    ///< fewer than ds + 1 frames have been seen
   no_candidate,  ///< no line fits into the rows that may be searched
@@ -16,7 +17,10 @@ enum class Gate : std::uint8_t {
   match          ///< the robot has been here before
 };
 
-/// `frame_error`, `warming_up`, ...
+/// How many gates there are.
+inline constexpr std::size_t gates = 6;
+
+/// `no_frame`, `frame_error`, ...
 [[nodiscard]] std::string_view name(Gate gate) noexcept;
 
 /// The best row of the map for a frame.

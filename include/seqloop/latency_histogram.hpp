@@ -10,6 +10,9 @@ namespace seqloop {
 
 /// Durations in fixed memory: buckets that are at most 1/32 wide, from 1 ns to 2^63 ns.
 class LatencyHistogram {
+  static constexpr unsigned steps_bits = 5;
+  static constexpr std::size_t steps = std::size_t{1} << steps_bits;
+
  public:
   /// Negative durations count as zero. Work: constant. Allocates: never.
   void add(Nanoseconds duration) noexcept;
@@ -22,11 +25,19 @@ class LatencyHistogram {
   ///   above the maximum; zero when nothing was added
   [[nodiscard]] Nanoseconds quantile(double share) const noexcept;
 
- private:
-  static constexpr unsigned steps_bits = 5;
-  static constexpr std::size_t steps = std::size_t{1} << steps_bits;
+  /// Buckets follow each other without a gap.
+  static constexpr std::size_t buckets = (64 - steps_bits) * steps;
 
-  std::array<std::uint64_t, (64 - steps_bits) * steps> buckets_{};
+  /// @param bucket below `buckets`
+  [[nodiscard]] std::uint64_t count_in(std::size_t bucket) const noexcept {
+    return buckets_[bucket];
+  }
+
+  /// @return the longest duration that falls into the bucket
+  [[nodiscard]] static Nanoseconds longest_in(std::size_t bucket) noexcept;
+
+ private:
+  std::array<std::uint64_t, buckets> buckets_{};
   std::uint64_t count_ = 0;
   Nanoseconds maximum_{0};
 };

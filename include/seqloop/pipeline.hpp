@@ -16,18 +16,18 @@ namespace seqloop {
 
 /// Where a frame's time went.
 struct StageTimes {
-  Nanoseconds grab{0};
+  Nanoseconds age{0};   ///< from when the picture was taken to when it was taken up; live sources
+  Nanoseconds grab{0};  ///< reading and decoding, without waiting for the camera
   Nanoseconds describe{0};
   Nanoseconds match{0};
-  Nanoseconds total{0};  ///< the three of them
-  Nanoseconds late{0};   ///< at live pace: how long after its time the frame was grabbed
+  Nanoseconds total{0};  ///< grab, describe and match
 };
 
 /// What the pipeline says of one frame.
 struct ProcessedFrame {
   Frame frame;  ///< as grabbed; valid until the next frame
   FrameReport report;
-  std::string_view fault;  ///< why the gate is `frame_error`; empty otherwise
+  std::string_view fault;  ///< why the gate is `frame_error` or `no_frame`; empty otherwise
   StageTimes times;
 };
 
@@ -45,21 +45,17 @@ struct DescribedFrame {
 [[nodiscard]] DescribedFrame describe(Grab grab, const Frame& frame, Describer* describer,
                                       std::span<float> buffer) noexcept;
 
-/// How a recording is played.
-enum class Pace : std::uint8_t {
-  max,  ///< a frame as soon as the one before is done
-  live  ///< no frame before its time
-};
-
 /// Grab, describe, match: one frame in, one report out.
 class Pipeline {
  public:
   /// All of them live longer than the pipeline. @param describer may be null when the source hands
   /// over descriptors. Allocates: one descriptor.
   Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
-           std::size_t descriptor_size, Pace pace);
+           std::size_t descriptor_size);
 
-  /// @return none when the drive is over
+  /// Takes the next frame through all stages. Frames that were lost or dropped just before it are
+  /// skipped in the detector, so that `report.newest` counts them as `Detector::skip` says.
+  /// @return none when the drive is over; at the gate `no_frame`, nothing came and nothing was done
   /// Errors: none thrown. Allocates: what source and describer do; matching never.
   [[nodiscard]] std::optional<ProcessedFrame> process() noexcept;
 
@@ -68,8 +64,6 @@ class Pipeline {
   Describer* describer_;
   Detector* detector_;
   Clock* clock_;
-  Pace pace_;
-  std::optional<Nanoseconds> start_;
   std::vector<float> descriptor_;
 };
 

@@ -177,6 +177,8 @@ BagOfWords::~BagOfWords() = default;
 
 std::size_t BagOfWords::size() const noexcept { return impl_->size(); }
 
+PictureNeeds BagOfWords::needs() const noexcept { return {.gray_is_enough = true}; }
+
 Description BagOfWords::describe(const Image& image, std::span<float> descriptor) noexcept {
   return guarded(impl_->fault(), image, descriptor, size(),
                  [&] { return impl_->describe(image, descriptor); });

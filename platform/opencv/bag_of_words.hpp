@@ -36,6 +36,9 @@ class BagOfWords : public Describer {
   /// Words.
   [[nodiscard]] std::size_t size() const noexcept override;
 
+  /// Grey pictures at the size at which they come.
+  [[nodiscard]] PictureNeeds needs() const noexcept override;
+
   /// `blank`, the zero vector, for a picture without a feature, or with words only that every
   /// training picture has. `failed` for an empty picture and a span that is not [D].
   /// Work: ORB and up to 500 D Hamming distances. Allocates: OpenCV does.

@@ -83,6 +83,7 @@ class ChangeRemoval::Impl {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return net_->size(); }
+  [[nodiscard]] PictureNeeds needs() const noexcept { return net_->needs(); }
   [[nodiscard]] std::size_t components() const noexcept { return components_.count(); }
   [[nodiscard]] const cv::Mat& picture() const noexcept { return picture_.mat(); }
   [[nodiscard]] std::string& fault() noexcept { return fault_; }
@@ -101,6 +102,8 @@ ChangeRemoval::ChangeRemoval(std::unique_ptr<DnnDescriber> net,
 ChangeRemoval::~ChangeRemoval() = default;
 
 std::size_t ChangeRemoval::size() const noexcept { return impl_->size(); }
+
+PictureNeeds ChangeRemoval::needs() const noexcept { return impl_->needs(); }
 
 Description ChangeRemoval::describe(const Image& image, std::span<float> descriptor) noexcept {
   return guarded(impl_->fault(), image, descriptor, size(),

@@ -36,6 +36,9 @@ class ChangeRemoval : public Describer {
   /// The net's.
   [[nodiscard]] std::size_t size() const noexcept override;
 
+  /// The net's.
+  [[nodiscard]] PictureNeeds needs() const noexcept override;
+
   /// As the net says. Work: the net's and 2 m P MACs. Allocates: what the net does.
   [[nodiscard]] Description describe(const Image& image,
                                      std::span<float> descriptor) noexcept override;

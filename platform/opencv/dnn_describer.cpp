@@ -200,6 +200,10 @@ DnnDescriber::~DnnDescriber() = default;
 
 std::size_t DnnDescriber::size() const noexcept { return impl_->size(); }
 
+PictureNeeds DnnDescriber::needs() const noexcept {
+  return {.width = input_width(), .height = input_height(), .gray_is_enough = gray()};
+}
+
 Description DnnDescriber::describe(const Image& image, std::span<float> descriptor) noexcept {
   return guarded(impl_->fault(), image, descriptor, size(),
                  [&] { return impl_->describe(image, descriptor); });

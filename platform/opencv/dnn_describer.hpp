@@ -52,6 +52,9 @@ class DnnDescriber : public Describer {
 
   [[nodiscard]] std::size_t size() const noexcept override;
 
+  /// The net's input size, and whether the net sees grey only.
+  [[nodiscard]] PictureNeeds needs() const noexcept override;
+
   /// `failed` for an empty picture, a span that is not [D], an exception of OpenCV, and a layer
   /// that gives NaN or infinity. Allocates: OpenCV does; nothing here once the picture size has
   /// been seen.

@@ -73,6 +73,9 @@ class PatchDescriber::Impl {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(size_.area()); }
+  [[nodiscard]] PictureNeeds needs() const noexcept {
+    return {.width = size_.width, .height = size_.height, .gray_is_enough = true};
+  }
   [[nodiscard]] std::string& fault() noexcept { return fault_; }
 
  private:
@@ -87,6 +90,8 @@ PatchDescriber::PatchDescriber(int width, int height)
 PatchDescriber::~PatchDescriber() = default;
 
 std::size_t PatchDescriber::size() const noexcept { return impl_->size(); }
+
+PictureNeeds PatchDescriber::needs() const noexcept { return impl_->needs(); }
 
 Description PatchDescriber::describe(const Image& image, std::span<float> descriptor) noexcept {
   return guarded(impl_->fault(), image, descriptor, size(),

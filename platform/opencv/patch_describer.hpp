@@ -26,6 +26,9 @@ class PatchDescriber : public Describer {
   /// width * height
   [[nodiscard]] std::size_t size() const noexcept override;
 
+  /// Grey pictures, width x height.
+  [[nodiscard]] PictureNeeds needs() const noexcept override;
+
   /// Colour becomes grey, then the picture is brought to its size by averaging (shrinking) or
   /// linearly (enlarging).
   /// @param descriptor [height, width] row by row; all 127.5 for a picture that is `blank`, each

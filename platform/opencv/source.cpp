@@ -22,7 +22,7 @@ std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path,
             Fault{name, "is a single picture", "name the folder that holds the drive"});
       return std::make_unique<VideoSource>(path, options.gray);
     case std::filesystem::file_type::character:
-      throw SetupError(Fault{name, "live cameras are not supported yet",
+      throw SetupError(Fault{name, "is a device, not a recording",
                              "record the drive first and name the video file or image folder"});
     case std::filesystem::file_type::not_found:
       throw SetupError(Fault{name, "does not exist", "check the name"});

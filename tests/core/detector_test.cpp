@@ -57,6 +57,110 @@ TEST(Detector, StaysWithinThePlanWhenLoopsAreClosedOntoTheWindowItself) {
   }
 }
 
+/// What two reports say, but for the work that it took.
+void expect_same_answer(const FrameReport& a, const FrameReport& b) {
+  ASSERT_EQ(a.newest, b.newest);
+  EXPECT_EQ(a.frame, b.frame);
+  EXPECT_EQ(a.gate, b.gate);
+  ASSERT_EQ(a.match.has_value(), b.match.has_value());
+  if (!a.match) return;
+  EXPECT_EQ(a.match->place, b.match->place);
+  EXPECT_EQ(a.match->score, b.match->score);
+  EXPECT_EQ(a.match->velocity, b.match->velocity);
+}
+
+TEST(Detector, AFrameThatNeverCameIsOneThatCannotBeReadWithoutTheSearch) {
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    for (const std::size_t exclude : {1U, 6U, 30U}) {
+      MatcherConfig config = paper(Candidates::all, 12, use);
+      config.exclude = exclude;
+      config.enhance = exclude > 5;
+      config.rwindow = 10;
+      config.standardisation.on = use == Use::close_loops;
+      const oracle::Vectors drive = two_laps(4, 80, 12);
+      PlaceMap skipped_map = use == Use::localise ? map_of(drive) : PlaceMap({160, 12});
+      PlaceMap stepped_map = use == Use::localise ? map_of(drive) : PlaceMap({160, 12});
+      Detector skipping(config, skipped_map);
+      Detector stepping(config, stepped_map);
+      const Work most = Detector::most_work(config, {160, 12});
+      std::size_t skipped = 0;
+      for (std::size_t frame = 0; frame < drive.size();) {
+        const FrameReport report = skipping.step(drive[frame]);
+        expect_same_answer(report, stepping.step(drive[frame]));
+        EXPECT_LE(report.work.distances, most.distances);
+        const std::size_t gap = std::min(frame % 5 == 0 ? frame % 13 : 0, drive.size() - frame - 1);
+        skipping.skip(gap);
+        for (std::size_t i = 0; i < gap; ++i) static_cast<void>(stepping.step({}));
+        skipped += gap;
+        frame += 1 + gap;
+      }
+      EXPECT_GT(skipped, 50U);
+      EXPECT_EQ(skipped_map.size(), stepped_map.size());
+    }
+  }
+}
+
+TEST(Detector, AGapLongerThanTheWindowBeginsItAnew) {
+  for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
+    const MatcherConfig config = paper(candidates, 10);
+    const oracle::Vectors reference = oracle::drive(7, 200, 16);
+    PlaceMap map = map_of(reference);
+    Detector interrupted(config, map);
+    for (std::size_t frame = 0; frame < 60; ++frame) {
+      static_cast<void>(interrupted.step(reference[frame]));
+    }
+    interrupted.skip(1000);
+    Detector fresh(config, map);
+    for (std::size_t frame = 150; frame < 180; ++frame) {
+      FrameReport expected = fresh.step(reference[frame]);
+      expected.newest += 60;
+      if (expected.frame) *expected.frame += 60;
+      const FrameReport report = interrupted.step(reference[frame]);
+      expect_same_answer(report, expected);
+      EXPECT_EQ(report.gate == Gate::warming_up, frame < 160);
+      EXPECT_EQ(report.full_search, expected.full_search);
+      if (report.match) {
+        EXPECT_EQ(report.match->head, frame);
+      }
+    }
+  }
+}
+
+TEST(Detector, FindsItsWayAfterAShortGapWithoutAFullSearch) {
+  for (const Candidates candidates : {Candidates::ranges, Candidates::adaptive}) {
+    const MatcherConfig config = paper(candidates, 20);
+    const oracle::Vectors reference = oracle::drive(7, 300, 16);
+    PlaceMap map = map_of(reference);
+    Detector detector(config, map);
+    std::size_t frame = 0;
+    for (; frame < 60; ++frame) static_cast<void>(detector.step(reference[frame]));
+    detector.skip(20);
+    frame += 20;
+    for (; frame < 140; ++frame) {
+      const FrameReport report = detector.step(reference[frame]);
+      EXPECT_FALSE(report.full_search);
+      ASSERT_TRUE(report.match) << frame;
+      if (frame >= 100) {
+        EXPECT_EQ(report.match->head, frame) << "the gap has left the window";
+      }
+    }
+  }
+}
+
+TEST(Detector, GapsOfNothingAndBeforeTheFirstFrameAreNone) {
+  PlaceMap map = map_of(oracle::drive(7, 30, 16));
+  Detector detector(paper(Candidates::all, 4), map);
+  detector.skip(3);
+  EXPECT_EQ(detector.step(map.place(0).first(16)).newest, 0U);
+  detector.skip(0);
+  EXPECT_EQ(detector.step(map.place(1).first(16)).newest, 1U);
+  MatcherConfig single = paper(Candidates::all, 0);
+  Detector frames(single, map);
+  static_cast<void>(frames.step(map.place(0).first(16)));
+  frames.skip(2);
+  EXPECT_EQ(frames.step(map.place(9).first(16)).match->place, 9U);
+}
+
 TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
   const oracle::Vectors drive = oracle::drive(6, 200, 16, 0.1F);
   PlaceMap map = map_of(drive);

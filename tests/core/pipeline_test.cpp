@@ -63,7 +63,7 @@ TEST(Pipeline, TakesEveryFrameThroughEveryStage) {
   FakeClock clock;
   PlaceMap map = map_of(drive);
   Detector detector(paper(Candidates::all, 6), map);
-  Pipeline pipeline(source, &describer, detector, clock, 16, Pace::max);
+  Pipeline pipeline(source, &describer, detector, clock, 16);
   std::size_t frames = 0;
   while (const auto processed = pipeline.process()) {
     EXPECT_EQ(processed->frame.index, frames);
@@ -79,18 +79,61 @@ TEST(Pipeline, TakesEveryFrameThroughEveryStage) {
   EXPECT_EQ(frames, 30U);
 }
 
-TEST(Pipeline, LivePaceKeepsEachFrameUntilItsTime) {
-  const oracle::Vectors drive = oracle::drive(3, 12, 16);
-  FakeSource source(12);
+/// Loses 3 frames before its frame 10, drops 2 before 20, 30 before 25, and has nothing now and
+/// then.
+class LiveFake : public FakeSource {
+ public:
+  using FakeSource::FakeSource;
+
+  Grab grab(Frame& frame) noexcept override {
+    if (++calls_ % 7 == 0) {
+      frame = {};
+      frame.fault = "no frame for a second";
+      return Grab::silent;
+    }
+    const Grab grab = FakeSource::grab(frame);
+    frame.age = Nanoseconds(33);
+    frame.waited = Nanoseconds(4);
+    if (frame.index == 10) frame.lost = 3;
+    if (frame.index == 20) frame.dropped = 2;
+    if (frame.index == 25) frame.dropped = 30;
+    return grab;
+  }
+
+ private:
+  int calls_ = 0;
+};
+
+TEST(Pipeline, CountsWhatNeverCameAndGoesOn) {
+  const oracle::Vectors drive = oracle::drive(3, 40, 16);
+  LiveFake source(40);
   FakeDescriber describer(drive);
   FakeClock clock;
   PlaceMap map = map_of(drive);
   Detector detector(paper(Candidates::all, 6), map);
-  Pipeline pipeline(source, &describer, detector, clock, 16, Pace::live);
-  while (pipeline.process()) {
+  Pipeline pipeline(source, &describer, detector, clock, 16);
+  std::uint64_t frames = 0;
+  std::uint64_t silences = 0;
+  while (const auto processed = pipeline.process()) {
+    if (processed->report.gate == Gate::no_frame) {
+      EXPECT_EQ(processed->fault, "no frame for a second");
+      ++silences;
+      continue;
+    }
+    const std::uint64_t skipped = frames < 10 ? 0 : frames < 20 ? 3 : 5;
+    EXPECT_EQ(processed->report.newest, frames + skipped) << "30 of them are not counted";
+    const bool warming_up = frames < 6 || (frames >= 25 && frames < 25 + 6);
+    const bool bad = frames == 5 || frames == 7;
+    if (!bad) {
+      EXPECT_EQ(processed->report.gate == Gate::warming_up, warming_up) << frames;
+    }
+    EXPECT_EQ(processed->times.age.count(), 33);
+    EXPECT_EQ(processed->times.grab.count(), 10 - 4);
+    EXPECT_EQ(processed->times.total.count(), 30 - 4);
+    ++frames;
   }
-  EXPECT_GE(clock.now(), std::chrono::milliseconds(5500)) << "frame 11 is due at 5.5 s";
-  EXPECT_LT(clock.now(), std::chrono::milliseconds(5501));
+  EXPECT_EQ(frames, 40U);
+  EXPECT_EQ(silences, 6U);
 }
 
 }  // namespace

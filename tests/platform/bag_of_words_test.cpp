@@ -145,5 +145,12 @@ TEST(BagOfWords, RefusesWhatItCannotLearnFrom) {
   EXPECT_TRUE(says(fault(drive(1, 1), 5), "every training picture has each of them"));
 }
 
+TEST(BagOfWords, NeedsGrayPicturesAsTheyCome) {
+  const PictureNeeds needs = trained(drive(1, 6), 50).needs();
+  EXPECT_EQ(needs.width, 0);
+  EXPECT_EQ(needs.height, 0);
+  EXPECT_TRUE(needs.gray_is_enough);
+}
+
 }  // namespace
 }  // namespace seqloop::opencv

@@ -36,5 +36,14 @@ TEST(BuiltinDescriber, TellsPicturesApart) {
   EXPECT_LT(std::inner_product(one.begin(), one.end(), other.begin(), 0.0), 0.999);
 }
 
+TEST(BuiltinDescriber, NeedsGrayPicturesOfItsInputSize) {
+  const auto describer = make_builtin_describer();
+  const PictureNeeds needs = describer->needs();
+  EXPECT_EQ(needs.width, describer->input_width());
+  EXPECT_EQ(needs.height, describer->input_height());
+  EXPECT_GT(needs.width, 0);
+  EXPECT_TRUE(needs.gray_is_enough);
+}
+
 }  // namespace
 }  // namespace seqloop::opencv

@@ -144,5 +144,14 @@ TEST(ChangeRemoval, FailsAndIsBlankAsTheNetIs) {
   EXPECT_EQ(describer.last_fault(), "");
 }
 
+TEST(ChangeRemoval, NeedsWhatTheNetNeeds) {
+  const std::vector<cv::Mat> pictures{pair_picture(0, 10), pair_picture(10, 0)};
+  const PictureNeeds gray = trained(gray_net(), pictures, 0).needs();
+  EXPECT_EQ(gray.width, 4);
+  EXPECT_EQ(gray.height, 4);
+  EXPECT_TRUE(gray.gray_is_enough);
+  EXPECT_FALSE(trained(colour_net(), pictures, 0).needs().gray_is_enough);
+}
+
 }  // namespace
 }  // namespace seqloop::opencv

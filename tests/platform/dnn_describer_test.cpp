@@ -209,5 +209,16 @@ layer { name: "later" type: "Power" bottom: "p" top: "q" power_param { shift: 1 
   expect_near(describe(settings, ramp), unit({26, 46, 106, 126}));
 }
 
+TEST(DnnDescriber, NeedsColourWhereTheNetSeesIt) {
+  ModelSettings settings = settings_of("colour");
+  settings.input_width = 5;
+  settings.input_height = 3;
+  const PictureNeeds needs = DnnDescriber(settings).needs();
+  EXPECT_EQ(needs.width, 5);
+  EXPECT_EQ(needs.height, 3);
+  EXPECT_FALSE(needs.gray_is_enough);
+  EXPECT_TRUE(DnnDescriber(settings_of("gray_chain")).needs().gray_is_enough);
+}
+
 }  // namespace
 }  // namespace seqloop::opencv

@@ -120,5 +120,12 @@ TEST(PatchDescriber, RefusesWhatItCannotDescribe) {
   EXPECT_EQ(describer.last_fault(), "");
 }
 
+TEST(PatchDescriber, NeedsSmallGrayPictures) {
+  const PictureNeeds needs = PatchDescriber(48, 24).needs();
+  EXPECT_EQ(needs.width, 48);
+  EXPECT_EQ(needs.height, 24);
+  EXPECT_TRUE(needs.gray_is_enough);
+}
+
 }  // namespace
 }  // namespace seqloop::opencv

@@ -39,7 +39,7 @@ TEST(OpenSource, NamesWhatItCannotOpen) {
   const auto pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_TRUE(says(open_error(folder.path() / "none"), "does not exist"));
-  EXPECT_TRUE(says(open_error("/dev/null"), "live cameras are not supported yet"));
+  EXPECT_TRUE(says(open_error("/dev/null"), "is a device, not a recording"));
   EXPECT_TRUE(says(open_error(pipe), "is neither a folder nor a file"));
   EXPECT_TRUE(says(open_error(folder.write("1.JPG", encoded(textured(8, 8), ".jpg"))),
                    "is a single picture"));

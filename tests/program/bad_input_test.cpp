@@ -286,5 +286,15 @@ TEST_F(BadInput, MatchListsAndTruths) {
   expect_refused("eval --threshold-on x", {"threshold-on", "--matches"});
 }
 
+TEST_F(BadInput, Cameras) {
+  folder_.write("file.txt", "no camera");
+  expect_refused("camera --device /no/camera", {"/no/camera", "there is no camera"});
+  expect_refused("camera --device /dev/null --frames 3", {"/dev/null", "no camera"});
+  expect_refused("camera --device file.txt", {"file.txt", "a file, no camera"});
+  expect_refused("camera --device . --frames 1", {"a folder, no camera"});
+  expect_refused("camera --frames 0", {"frames"});
+  expect_refused("camera --format H264 --size 640 --fps 0", {"format", "size", "fps"});
+}
+
 }  // namespace
 }  // namespace seqloop

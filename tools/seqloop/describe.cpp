@@ -3,9 +3,11 @@
 #include <vector>
 
 #include "files/npy_file.hpp"
+#include "linux/steady_clock.hpp"
 #include "seqloop/describe_drive.hpp"
 #include "seqloop/drives.hpp"
 #include "seqloop/interruption.hpp"
+#include "seqloop/live_camera.hpp"
 #include "seqloop/outputs.hpp"
 #include "seqloop/progress.hpp"
 #include "seqloop/say.hpp"
@@ -17,11 +19,15 @@ namespace {
 struct DescribeSettings {
   std::filesystem::path source;
   std::filesystem::path out;
+  std::size_t frames = 0;  ///< 0: all
   DriveSettings drive;
+  CameraSettings camera;
 };
 
 void describe(const DescribeSettings& settings, Faults faults) {
   take_interruptions();
+  live::SteadyClock clock;
+  const bool camera = is_camera(settings.source);
   std::unique_ptr<Describer> describer;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<files::NpyWriter> out;
@@ -29,7 +35,7 @@ void describe(const DescribeSettings& settings, Faults faults) {
   if (is_described(settings.source)) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
-  } else {
+  } else if (!camera) {
     collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
   }
   std::vector<std::filesystem::path> inputs = settings.drive.training;
@@ -42,12 +48,21 @@ void describe(const DescribeSettings& settings, Faults faults) {
     collect(faults, [&] { out = std::make_unique<files::NpyWriter>(settings.out, size); });
   }
   refuse(std::move(faults));
+  if (camera) {
+    LiveCamera opened =
+        open_camera(settings.source, settings.camera, settings.drive.fps, *describer, {}, clock);
+    say("{}: {}", settings.source.string(), opened.mode);
+    source = std::move(opened.source);
+  }
 
   Progress progress("describing", source->frame_count());
-  const DescribedCount count =
-      describe_drive(settings.source.string(), *source, *describer, *out, progress);
+  const DescribedCount count = describe_drive(settings.source.string(), *source, *describer, *out,
+                                              progress, {settings.frames, camera});
   say("{} frames of {} values in {}", out->rows(), describer->size(), settings.out.string());
   if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
+  if (count.missing > 0) {
+    say("{} frames that were lost or dropped are rows of zeros", count.missing);
+  }
   if (count.blank > 0) say("{} frames are blank, without any feature", count.blank);
 }
 
@@ -59,9 +74,12 @@ Verb describe_verb() {
       "describe", "Write the descriptors of every frame of a drive", {}, [settings](Faults faults) {
         describe(*settings, std::move(faults));
       }};
-  verb.options.path("source", settings->source, "image folder or video file");
+  verb.options.path("source", settings->source,
+                    "camera (/dev/video0, until interrupted), image folder or video file");
   verb.options.path("out", settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
+  verb.options.count("frames", settings->frames, "stop after so many frames [0: all]");
+  add_camera_options(verb.options, settings->camera);
   add_drive_options(verb.options, settings->drive);
   return verb;
 }

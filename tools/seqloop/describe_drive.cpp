@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "seqloop/drives.hpp"
@@ -12,12 +13,29 @@
 namespace seqloop::program {
 
 DescribedCount describe_drive(const std::string& name, FrameSource& source, Describer& describer,
-                              files::NpyWriter& out, Progress& progress) {
+                              files::NpyWriter& out, Progress& progress,
+                              const DescribeUntil& until) {
   DescribedCount count;
   std::vector<float> descriptor(describer.size());
+  const std::vector<float> nothing(describer.size(), 0.0F);
+  const auto whole = [&] { return until.rows > 0 && out.rows() >= until.rows; };
+  bool silent = false;
   Frame frame;
-  for (Grab grab = source.grab(frame); grab != Grab::end; grab = source.grab(frame)) {
-    stop_if_interrupted();
+  while (!whole()) {
+    const Grab grab = source.grab(frame);
+    if (grab == Grab::end) break;
+    if (!until.interrupted) stop_if_interrupted();
+    const bool was_silent = std::exchange(silent, grab == Grab::silent);
+    if (silent) {
+      if (!was_silent) progress.tell(fmt::format("{}: {}", name, frame.fault));
+      continue;
+    }
+    const bool first = out.rows() == 0;  // a camera's first frames may be long gone
+    for (std::uint64_t gap = first ? 0 : frame.lost + frame.dropped; gap > 0 && !whole(); --gap) {
+      out.append(nothing);
+      ++count.missing;
+    }
+    if (whole()) break;
     const DescribedFrame described = describe(grab, frame, &describer, descriptor);
     if (described.descriptor.empty()) {
       std::ranges::fill(descriptor, 0.0F);
@@ -31,7 +49,7 @@ DescribedCount describe_drive(const std::string& name, FrameSource& source, Desc
   }
   progress.done();
   tell_notes(name, source);
-  if (out.rows() == count.unreadable) {
+  if (out.rows() == count.unreadable + count.missing) {
     throw SetupError({name, "none of its frames can be read"});
   }
   out.commit();

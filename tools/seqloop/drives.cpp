@@ -77,7 +77,8 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                [&settings](std::string_view value) {
                  settings.remove_components = parse_count_to(value, 999);
                }});
-  options.add({"fps", ValueKind::number, "frames a second of an image folder [10]",
+  options.add({"fps", ValueKind::number,
+               "frames a second: of an image folder; of a camera, at least [10]",
                [&settings](std::string_view value) {
                  settings.fps = parse_number(value);
                  if (!(settings.fps >= 1e-3 && settings.fps <= 1e6)) {

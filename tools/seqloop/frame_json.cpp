@@ -16,15 +16,27 @@ double milliseconds(Nanoseconds duration) {
 /// JSON has no NaN and no infinity.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// Names of the limits that a frame broke.
+Json broken(const Misses& missed) {
+  Json names = Json::array();
+  if (missed.age) names.push_back("age");
+  if (missed.grab) names.push_back("grab");
+  if (missed.describe) names.push_back("describe");
+  if (missed.match) names.push_back("match");
+  if (missed.total) names.push_back("total");
+  return names;
+}
+
 }  // namespace
 
-std::string frame_json(const ProcessedFrame& processed, bool deadline_missed) {
+std::string frame_json(const ProcessedFrame& processed, const LoopState& state) {
   const FrameReport& report = processed.report;
+  const bool came = report.gate != Gate::no_frame;
   const StageTimes& times = processed.times;
   Json json;
   json["frame"] = report.frame ? Json(*report.frame) : Json(nullptr);
-  json["newest"] = processed.frame.index;
-  json["time_s"] = processed.frame.time_s;
+  json["newest"] = came ? Json(report.newest) : Json(nullptr);
+  json["time_s"] = came ? Json(processed.frame.time_s) : Json(nullptr);
   json["status"] = name(report.gate);
   for (const char* key : {"match", "score", "uniqueness", "velocity", "head"}) json[key] = nullptr;
   if (report.match) {
@@ -39,13 +51,18 @@ std::string frame_json(const ProcessedFrame& processed, bool deadline_missed) {
   json["distances"] = report.work.distances;
   json["full_search"] = report.full_search;
   json["map_full"] = report.map_full;
-  json["deadline_missed"] = deadline_missed;
-  json["dropped"] = 0;  // this loop waits for its source and drops nothing
+  json["deadline_missed"] = state.missed.any();
+  if (state.missed.any()) json["missed"] = broken(state.missed);
+  json["overloaded"] = state.overloaded;
+  json["dropped"] = processed.frame.dropped;
+  json["lost"] = processed.frame.lost;
+  json["sequence"] = processed.frame.sequence;
   json["latency_ms"] = {{"grab", milliseconds(times.grab)},
                         {"describe", milliseconds(times.describe)},
                         {"match", milliseconds(times.match)},
                         {"total", milliseconds(times.total)}};
-  json["late_ms"] = milliseconds(times.late);
+  json["age_ms"] = milliseconds(times.age);
+  if (!processed.frame.remark.empty()) json["remark"] = processed.frame.remark;
   if (!processed.fault.empty()) json["fault"] = processed.fault;
   // A file name in a message may be no UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';

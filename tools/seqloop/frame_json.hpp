@@ -1,13 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 
-#include "seqloop/pipeline.hpp"
+#include "seqloop/budget.hpp"
 
 namespace seqloop::program {
 
+/// What the loop as a whole was doing at a frame.
+struct LoopState {
+  Misses missed;            ///< limits that the frame broke
+  bool overloaded = false;  ///< the overload policy is in force
+};
+
 /// One line of `run`'s output, newline included. What a frame does not have is null.
-[[nodiscard]] std::string frame_json(const ProcessedFrame& processed, bool deadline_missed);
+[[nodiscard]] std::string frame_json(const ProcessedFrame& processed, const LoopState& state);
 
 }  // namespace seqloop::program

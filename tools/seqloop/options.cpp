@@ -62,6 +62,24 @@ std::vector<double> parse_numbers(std::string_view text, char separator) {
   }
 }
 
+int parse_pixels(std::string_view text, std::size_t least) {
+  constexpr std::size_t most = 16'384;
+  const std::size_t pixels = parse_count(text);
+  if (pixels < least || pixels > most) {
+    throw std::invalid_argument(quoted(text) + " is not between " + std::to_string(least) +
+                                " and " + std::to_string(most));
+  }
+  return static_cast<int>(pixels);
+}
+
+std::pair<int, int> parse_size(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos || text.find('x', cross + 1) != std::string_view::npos) {
+    throw std::invalid_argument(quoted(text) + " is not WIDTHxHEIGHT");
+  }
+  return {parse_pixels(text.substr(0, cross), 1), parse_pixels(text.substr(cross + 1), 1)};
+}
+
 void OptionTable::flag(std::string name, bool& target, std::string help) {
   add({std::move(name), ValueKind::flag, std::move(help),
        [&target](std::string_view value) { target = value != "false"; }});

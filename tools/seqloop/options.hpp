@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "seqloop/fault.hpp"
@@ -61,5 +62,9 @@ class OptionTable {
 [[nodiscard]] double parse_number(std::string_view text);
 [[nodiscard]] bool parse_on_off(std::string_view text);
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text, char separator);
+/// A whole number of pixels, up to 16384.
+[[nodiscard]] int parse_pixels(std::string_view text, std::size_t least);
+/// WxH, each 1 or more. @return width, height
+[[nodiscard]] std::pair<int, int> parse_size(std::string_view text);
 
 }  // namespace seqloop::program

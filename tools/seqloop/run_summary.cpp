@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 
 namespace seqloop::program {
@@ -12,45 +11,54 @@ double milliseconds(Nanoseconds duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
 
-std::string stage_line(const char* stage, const LatencyHistogram& times) {
-  return fmt::format("  {:<10}{:>10.3f}{:>10.3f}{:>10.3f}\n", stage,
-                     milliseconds(times.quantile(0.5)), milliseconds(times.quantile(0.99)),
-                     milliseconds(times.maximum()));
+std::string stage_line(const StageRecord& stage) {
+  return fmt::format(
+      "  {:<10}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}\n", stage.name,
+      milliseconds(stage.times.quantile(0.5)), milliseconds(stage.times.quantile(0.99)),
+      milliseconds(stage.times.quantile(0.999)), milliseconds(stage.times.maximum()));
 }
 
 }  // namespace
 
-bool RunSummary::add(const ProcessedFrame& processed) {
-  const StageTimes& times = processed.times;
-  grab_.add(times.grab);
-  describe_.add(times.describe);
-  match_.add(times.match);
-  total_.add(times.total);
-  latest_ = std::max(latest_, times.late);
+void RunSummary::add(const ProcessedFrame& processed, const LoopState& state) {
   ++at_gate_[static_cast<std::size_t>(processed.report.gate)];
+  if (processed.report.gate == Gate::no_frame) return;
+  const StageTimes& times = processed.times;
+  stages_[grab].times.add(times.grab);
+  stages_[describe].times.add(times.describe);
+  stages_[match].times.add(times.match);
+  stages_[total].times.add(times.total);
+  stages_[age].times.add(times.age);
+  stages_[answer].times.add(times.age + times.total);
+  dropped_ += processed.frame.dropped;
+  lost_ += processed.frame.lost;
   if (processed.report.map_full) ++map_full_;
-  const bool missed = times.total > budget_;
-  if (missed) ++misses_;
-  return missed;
-}
-
-std::uint64_t RunSummary::errors() const noexcept {
-  return at_gate_[static_cast<std::size_t>(Gate::frame_error)];
+  if (state.missed.any()) ++misses_;
+  if (state.overloaded) ++overloaded_;
 }
 
 std::string RunSummary::text() const {
   std::string text = fmt::format("{} frames:", frames());
-  for (std::size_t gate = gates; gate-- > 0;) {
+  const auto first = static_cast<std::size_t>(Gate::frame_error);
+  for (std::size_t gate = gates; gate-- > first;) {
     text += fmt::format(" {} {}{}", at_gate_[gate], name(static_cast<Gate>(gate)),
-                        gate > 0 ? "," : "\n");
+                        gate > first ? "," : "\n");
   }
-  text += fmt::format("  {:<10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "max");
-  text += stage_line("grab", grab_) + stage_line("describe", describe_) +
-          stage_line("match", match_) + stage_line("total", total_);
-  text += fmt::format("  {} frames missed the budget of {:g} ms, 0 dropped\n", misses_,
-                      milliseconds(budget_));
-  if (latest_ > Nanoseconds(0)) {
-    text += fmt::format("  grabbed up to {:.1f} ms after their time\n", milliseconds(latest_));
+  text += fmt::format("  {:<10}{:>10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "p99.9", "max");
+  for (const StageRecord& stage : stages()) text += stage_line(stage);
+  text +=
+      fmt::format("  {} frames missed the budget of {:g} ms", misses_, milliseconds(budget_.total));
+  if (capture_) {
+    text += fmt::format("\n  {} grabbed: {} taken, {} dropped; {} lost by the camera\n",
+                        capture_->delivered, frames(), capture_->dropped, capture_->lost);
+  } else {
+    text += ", 0 dropped\n";
+  }
+  if (at(Gate::no_frame) > 0) {
+    text += fmt::format("  {} times no frame came in time\n", at(Gate::no_frame));
+  }
+  if (overloaded_ > 0) {
+    text += fmt::format("  {} frames under the overload policy\n", overloaded_);
   }
   if (map_full_ > 0) {
     text += fmt::format("  the map was full: {} frames became no places; raise --max-places\n",

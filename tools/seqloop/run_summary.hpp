@@ -2,39 +2,66 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 
+#include "linux/live_source.hpp"
+#include "seqloop/frame_json.hpp"
 #include "seqloop/latency_histogram.hpp"
-#include "seqloop/pipeline.hpp"
 
 namespace seqloop::program {
 
-/// Counts a run, in fixed memory, for the words at its end.
+/// A stage of the loop, and how long it took.
+struct StageRecord {
+  const char* name;
+  LatencyHistogram times;
+};
+
+/// Counts a run, in fixed memory, for the words and the report at its end.
 class RunSummary {
  public:
-  explicit RunSummary(Nanoseconds budget) : budget_(budget) {}
+  /// @param live whether frames have an age and can be dropped
+  RunSummary(const Budget& budget, bool live) : budget_(budget), live_(live) {}
 
-  /// @return whether the frame took longer than the budget
-  bool add(const ProcessedFrame& processed);
+  void add(const ProcessedFrame& processed, const LoopState& state);
 
-  [[nodiscard]] std::uint64_t frames() const noexcept { return grab_.count(); }
-  [[nodiscard]] std::uint64_t errors() const noexcept;
+  /// What became of a live source's frames.
+  void captured(const live::LiveCounts& counts) { capture_ = counts; }
+  [[nodiscard]] const std::optional<live::LiveCounts>& capture() const noexcept { return capture_; }
+
+  /// Frames that were taken up, those that could not be read included.
+  [[nodiscard]] std::uint64_t frames() const noexcept { return stages_[total].times.count(); }
+  [[nodiscard]] std::uint64_t at(Gate gate) const noexcept {
+    return at_gate_[static_cast<std::size_t>(gate)];
+  }
+  [[nodiscard]] std::uint64_t misses() const noexcept { return misses_; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+  [[nodiscard]] std::uint64_t overloaded() const noexcept { return overloaded_; }
+
+  /// grab, describe, match, total; of a live source also age and answer, which is age and total.
+  [[nodiscard]] std::span<const StageRecord> stages() const noexcept {
+    return std::span(stages_).first(live_ ? stages_.size() : age);
+  }
 
   /// Several lines.
   [[nodiscard]] std::string text() const;
 
  private:
-  static constexpr std::size_t gates = 5;
+  enum Stage : std::size_t { grab, describe, match, total, age, answer };
 
-  Nanoseconds budget_;
+  Budget budget_;
+  bool live_;
   std::array<std::uint64_t, gates> at_gate_{};
   std::uint64_t misses_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::uint64_t lost_ = 0;
+  std::uint64_t overloaded_ = 0;
   std::uint64_t map_full_ = 0;
-  Nanoseconds latest_{0};
-  LatencyHistogram grab_;
-  LatencyHistogram describe_;
-  LatencyHistogram match_;
-  LatencyHistogram total_;
+  std::optional<live::LiveCounts> capture_;
+  std::array<StageRecord, 6> stages_{
+      {{"grab", {}}, {"describe", {}}, {"match", {}}, {"total", {}}, {"age", {}}, {"answer", {}}}};
 };
 
 }  // namespace seqloop::program

@@ -21,24 +21,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-int parse_pixels(std::string_view text, std::size_t least) {
-  constexpr std::size_t most = 16'384;
-  const std::size_t pixels = parse_count(text);
-  if (pixels < least || pixels > most) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not between " +
-                                std::to_string(least) + " and " + std::to_string(most));
-  }
-  return static_cast<int>(pixels);
-}
-
-std::pair<int, int> parse_size(std::string_view text) {
-  const std::vector<std::string_view> sides = split(text, 'x');
-  if (sides.size() != 2) {
-    throw std::invalid_argument("'" + std::string(text) + "' is not WIDTHxHEIGHT");
-  }
-  return {parse_pixels(sides[0], 1), parse_pixels(sides[1], 1)};
-}
-
 double parse_moment(std::string_view text) {
   constexpr std::size_t most_parts = 3;
   const std::vector<double> parts = parse_numbers(text, ':');

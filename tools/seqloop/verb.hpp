@@ -25,6 +25,7 @@ struct Verb {
 [[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb bench_verb();
 [[nodiscard]] Verb stills_verb();
+[[nodiscard]] Verb camera_verb();
 
 /// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
 template <class Part>

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "seqloop/picture_decoder.hpp"
+#include "seqloop/picture_needs.hpp"
+
+namespace seqloop::turbojpeg {
+
+/// Decodes the JPEG pictures of a camera, no further than needed: grey from the luma alone (full
+/// range), and at the smallest of eighths of the size (1/8, 2/8 ... 8/8) that is as large as needed
+/// both ways. That moves the built-in descriptor of Gardens Point's frames by 0.06 (day) and 0.09
+/// (night) on average, where neighbouring frames are 0.46 apart, and leaves as many answers right.
+///
+/// A frame without Huffman tables, as many cameras send them, has the standard ones. Nothing is
+/// kept from frame to frame: the same bytes give the same picture or fault whatever came before.
+///
+/// Faults are: bytes that are no whole baseline JPEG picture of one or three components; a size
+/// other than the camera agreed to; and whatever libjpeg warns of, because it then makes up the
+/// rest of the picture. Damage that leaves valid codes behind cannot be seen. What comes after the
+/// picture's end is padding and is not looked at; so are up to `most_padding` bytes just before the
+/// end, which some cameras put there.
+class MjpgDecoder : public PictureDecoder {
+ public:
+  /// In bytes, beyond those that libjpeg has read ahead. Of 1,847 damaged pictures whose damage
+  /// libjpeg sees, 7 pass for padded at 4 bytes and 20 at 16.
+  static constexpr int most_padding = 4;
+
+  explicit MjpgDecoder(const PictureNeeds& needs);
+  MjpgDecoder(const MjpgDecoder&) = delete;
+  MjpgDecoder& operator=(const MjpgDecoder&) = delete;
+  MjpgDecoder(MjpgDecoder&&) = delete;
+  MjpgDecoder& operator=(MjpgDecoder&&) = delete;
+  ~MjpgDecoder() override;
+
+  /// @param raw `mjpg`; its width and height are those that the camera agreed to
+  /// @param image grey or BGR, `needs` says which. Its own memory, taken when the size is new
+  /// Work: at most that of the size agreed to. Allocates: libjpeg does, in chunks whose number does
+  /// not depend on the size, and frees it all.
+  [[nodiscard]] std::string_view decode(const RawPicture& raw, Image& image) noexcept override;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seqloop::turbojpeg

@@ -1,0 +1,38 @@
+#include "seqloop/camera_decoder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "opencv/builtin_describer.hpp"
+#include "platform/jpegs.hpp"
+
+namespace seqloop::program {
+namespace {
+
+TEST(CameraDecoder, TakesWhateverACameraSends) {
+  const auto describer = opencv::make_builtin_describer();
+  CameraDecoder decoder(describer->needs());
+  Image image;
+  const test::Bytes jpeg = test::jpeg_of(test::textured(640, 480));
+  ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 640, 480), image), "");
+  EXPECT_EQ(image.width, 320);  // the smallest that holds twice 128x64
+  EXPECT_EQ(image.format, PixelFormat::gray8);
+  const test::Bytes yuyv(std::size_t{640} * 480 * 2, 100);
+  ASSERT_EQ(decoder.decode({yuyv, 640, 480, 1280, RawFormat::yuyv}, image), "");
+  EXPECT_EQ(image.width, 640);
+  EXPECT_EQ(image.format, PixelFormat::gray8);
+}
+
+TEST(CameraDecoder, MakesColourWhereThatIsNeeded) {
+  CameraDecoder decoder({.width = 224, .height = 224});
+  Image image;
+  const test::Bytes jpeg = test::jpeg_of(test::textured(640, 480));
+  ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 640, 480), image), "");
+  EXPECT_EQ(image.height, 480);  // seven eighths are less than twice 224
+  EXPECT_EQ(image.format, PixelFormat::bgr8);
+  const test::Bytes nv12(std::size_t{640} * 480 * 3 / 2, 100);
+  ASSERT_EQ(decoder.decode({nv12, 640, 480, 640, RawFormat::nv12}, image), "");
+  EXPECT_EQ(image.format, PixelFormat::bgr8);
+}
+
+}  // namespace
+}  // namespace seqloop::program

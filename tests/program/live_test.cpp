@@ -1,0 +1,169 @@
+// A recording played at its own rate through the real binary: ring, budget, policy, summary.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/oracle.hpp"
+#include "files/npy_file.hpp"
+#include "program/program.hpp"
+
+namespace seqloop {
+namespace {
+
+using Json = nlohmann::json;
+
+class Live : public test::Program {
+ protected:
+  void write_drive(const std::string& name, std::size_t frames) const {
+    const oracle::Vectors rows = oracle::drive(11, frames, 24, 0.2F);
+    files::NpyWriter writer(file(name), 24);
+    for (const auto& row : rows) writer.append(row);
+    writer.commit();
+  }
+  [[nodiscard]] std::vector<Json> lines(const std::string& name) const {
+    std::istringstream text(test::read_all(file(name)));
+    std::vector<Json> all;
+    for (std::string line; std::getline(text, line);) all.push_back(Json::parse(line));
+    return all;
+  }
+  [[nodiscard]] Json json(const std::string& name) const {
+    return Json::parse(test::read_all(file(name)));
+  }
+};
+
+TEST_F(Live, EveryFrameOfTheRecordingIsTakenOrCounted) {
+  write_drive("q.npy", 120);
+  const test::Outcome outcome =
+      run("run --source q.npy --ds 5 --exclude 20 --fps 400 --pace live --out r.jsonl "
+          "--summary s.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json summary = json("s.json");
+  std::uint64_t frames = 0;
+  std::uint64_t dropped = 0;
+  for (const Json& line : lines("r.jsonl")) {
+    ++frames;
+    dropped += line["dropped"].get<std::uint64_t>();
+    EXPECT_GE(line["age_ms"].get<double>(), 0.0);
+    EXPECT_EQ(line["lost"], 0);
+    EXPECT_LE(line["newest"].get<std::uint64_t>() + 1, frames + dropped)
+        << "dropped frames keep their numbers, unless they are more than a window";
+  }
+  EXPECT_EQ(summary["frames"], frames);
+  EXPECT_EQ(summary["captured"]["grabbed"], 120);
+  EXPECT_EQ(summary["captured"]["taken"].get<std::uint64_t>() +
+                summary["captured"]["dropped"].get<std::uint64_t>(),
+            120U);
+  for (const char* stage : {"grab", "describe", "match", "total", "age", "answer"}) {
+    std::uint64_t counted = 0;
+    for (const Json& bucket : summary["stages"][stage]["buckets"]) {
+      counted += bucket[1].get<std::uint64_t>();
+    }
+    EXPECT_EQ(counted, frames) << stage;
+  }
+  EXPECT_NE(outcome.err.find("120 grabbed"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Live, AnOverloadedLoopSaysSoAndThinsOutAsDeclared) {
+  write_drive("q.npy", 200);
+  const test::Outcome outcome =
+      run("run --source q.npy --ds 5 --exclude 20 --fps 400 --pace live --out r.jsonl "
+          "--budget-total 1e-6 --overload-policy every-nth --overload-every 3 --overload-after 4 "
+          "--summary s.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::uint64_t overloaded = 0;
+  for (const Json& line : lines("r.jsonl")) {
+    EXPECT_TRUE(line["deadline_missed"]);
+    EXPECT_EQ(line["missed"], Json::array({"total"}));
+    if (line["overloaded"]) {
+      ++overloaded;
+    } else {
+      EXPECT_EQ(overloaded, 0U) << "no frame can be within this budget";
+    }
+  }
+  EXPECT_GT(overloaded, 20U);
+  const Json summary = json("s.json");
+  EXPECT_EQ(summary["overload"]["policy"], "every-nth");
+  EXPECT_EQ(summary["overload"]["times"], 1);
+  EXPECT_EQ(summary["overload"]["frames"], overloaded);
+  EXPECT_EQ(summary["misses"], summary["frames"]);
+  EXPECT_GT(summary["captured"]["dropped"], 100) << "two of three";
+  EXPECT_NE(outcome.err.find("taking one frame of 3"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Live, AtMaximalPaceNothingIsDroppedAndThereIsNoAge) {
+  write_drive("q.npy", 60);
+  const test::Outcome outcome =
+      run("run --source q.npy --ds 5 --exclude 20 --out r.jsonl --budget-total 1e-6 "
+          "--overload-after 1 --summary s.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const Json& line : lines("r.jsonl")) {
+    EXPECT_EQ(line["dropped"], 0);
+    EXPECT_FALSE(line["overloaded"]);
+  }
+  const Json summary = json("s.json");
+  EXPECT_EQ(summary["frames"], 60);
+  EXPECT_FALSE(summary.contains("captured"));
+  EXPECT_FALSE(summary["stages"].contains("age"));
+}
+
+TEST_F(Live, StopsAfterAsManyFramesAsAskedFor) {
+  write_drive("q.npy", 60);
+  const test::Outcome outcome =
+      run("run --source q.npy --ds 5 --exclude 20 --frames 40 --out r.jsonl");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(lines("r.jsonl").size(), 40U);
+}
+
+TEST_F(Live, TellsEveryFaultOfItsLimitsAtOnce) {
+  write_drive("q.npy", 60);
+  const test::Outcome outcome =
+      run("run --source q.npy --out r.jsonl --budget-total 0 --budget-age -1 --budget-match 1e10 "
+          "--overload-every 1 --overload-after 0 --overload-recover 0 --overload-policy skip "
+          "--realtime-priority 99 --realtime-cpus 1,,2 --summary r.jsonl");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* fault :
+       {"budget-total", "budget-age", "budget-match", "overload-every", "overload-after",
+        "overload-recover", "overload-policy", "realtime-priority", "realtime-cpus", "summary"}) {
+    EXPECT_NE(outcome.err.find(fault), std::string::npos) << fault << '\n' << outcome.err;
+  }
+  EXPECT_EQ(listing(), "q.npy ");
+}
+
+TEST_F(Live, AConfigurationFileSetsTheBudget) {
+  write_drive("q.npy", 60);
+  folder_.write("c.toml",
+                "ds = 5\nexclude = 20\n[budget]\ntotal = 7\nmatch = 3\n[overload]\npolicy = "
+                "\"every-nth\"\nafter = 9\n");
+  const test::Outcome outcome =
+      run("run --config c.toml --source q.npy --out r.jsonl --summary s.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json summary = json("s.json");
+  EXPECT_EQ(summary["budget_ms"]["total"], 7.0);
+  EXPECT_EQ(summary["budget_ms"]["match"], 3.0);
+  EXPECT_EQ(summary["overload"]["policy"], "every-nth");
+  EXPECT_EQ(summary["overload"]["after"], 9);
+}
+
+TEST_F(Live, TheLatencyReportIsOnePageWithAPicture) {
+  write_drive("q.npy", 60);
+  ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --fps 500 --pace live --out r.jsonl "
+                "--summary s.json")
+                .exit_code,
+            0);
+  const auto report = [&](const std::string& arguments) {
+    return std::system(("cd '" + folder_.path().string() + "' && " SEQLOOP_LATENCY_REPORT " " +
+                        arguments + " >report.txt 2>&1")
+                           .c_str());
+  };
+  ASSERT_EQ(report("s.json p.html"), 0) << test::read_all(file("report.txt"));
+  const std::string page = test::read_all(file("p.html"));
+  for (const char* part : {"<svg", "q.npy", "p99.9", "answer", "60 frames"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_TRUE(exists("p.svg"));
+  EXPECT_NE(report("r.jsonl x.html"), 0) << "that is no summary";
+  EXPECT_NE(report("missing.json x.html"), 0);
+  EXPECT_FALSE(exists("x.html"));
+}
+
+}  // namespace
+}  // namespace seqloop
