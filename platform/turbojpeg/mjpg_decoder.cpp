@@ -25,17 +25,17 @@ struct Size {
   bool operator==(const Size&) const = default;
 };
 
-/// The smallest size, no larger than the picture, that is as large as needed both ways.
+/// A whole, a half, a quarter or an eighth of the picture, the smallest that is as large as needed
+/// both ways. The eighths in between take longer than the whole picture does: 0.75 ms for 7/8 of
+/// 640x360, 0.55 for all of it.
 Size reduced(const Size& full, const PictureNeeds& needs) {
   if (needs.width <= 0 || needs.height <= 0) return full;
-  int count = 0;
-  const tjscalingfactor* factors = tjGetScalingFactors(&count);
   Size smallest = full;
-  for (const tjscalingfactor factor : std::span(factors, static_cast<std::size_t>(count))) {
-    const Size size{TJSCALED(full.width, factor), TJSCALED(full.height, factor)};
-    if (size.width >= needs.width && size.height >= needs.height && size.width <= smallest.width &&
-        size.height <= smallest.height)
-      smallest = size;
+  for (const int part : {2, 4, 8}) {
+    const Size size{TJSCALED(full.width, (tjscalingfactor{1, part})),
+                    TJSCALED(full.height, (tjscalingfactor{1, part}))};
+    if (size.width < needs.width || size.height < needs.height) break;
+    smallest = size;
   }
   return smallest;
 }

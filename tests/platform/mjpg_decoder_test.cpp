@@ -83,11 +83,12 @@ TEST(MjpgDecoder, TakesTheSmallestSizeThatIsLargeEnoughBothWays) {
   struct Case {
     int width, height, needed_width, needed_height, decoded_width, decoded_height;
   };
-  for (const Case& each : {Case{640, 480, 128, 64, 160, 120}, Case{640, 480, 80, 60, 80, 60},
-                           Case{640, 480, 81, 60, 160, 120}, Case{640, 480, 80, 61, 160, 120},
-                           Case{640, 480, 640, 480, 640, 480}, Case{640, 480, 227, 227, 320, 240},
-                           Case{640, 480, 1000, 10, 640, 480}, Case{640, 480, 0, 0, 640, 480},
-                           Case{100, 75, 1, 1, 13, 10}, Case{7, 5, 1, 1, 1, 1}}) {
+  for (const Case& each :
+       {Case{640, 480, 128, 64, 160, 120}, Case{640, 480, 80, 60, 80, 60},
+        Case{640, 480, 81, 60, 160, 120}, Case{640, 480, 80, 61, 160, 120},
+        Case{640, 480, 640, 480, 640, 480}, Case{640, 480, 227, 227, 320, 240},
+        Case{640, 480, 321, 10, 640, 480}, Case{640, 480, 1000, 10, 640, 480},
+        Case{640, 480, 0, 0, 640, 480}, Case{100, 75, 1, 1, 13, 10}, Case{7, 5, 1, 1, 1, 1}}) {
     MjpgDecoder decoder(
         {.width = each.needed_width, .height = each.needed_height, .gray_is_enough = true});
     const cv::Mat picture =
@@ -102,7 +103,7 @@ TEST(MjpgDecoder, AReducedPictureIsTheFullOneAveraged) {
   for (const PictureNeeds& needs : {gray, colour}) {
     MjpgDecoder full(needs);
     const cv::Mat whole = decoded(full, jpeg, 640, 480);
-    for (int eighths = 1; eighths < 8; ++eighths) {
+    for (const int eighths : {1, 2, 4}) {
       const cv::Size size(80 * eighths, 60 * eighths);
       MjpgDecoder reduced(
           {.width = size.width, .height = size.height, .gray_is_enough = needs.gray_is_enough});
@@ -270,9 +271,9 @@ TEST(MjpgDecoder, NothingIsWrittenToTheTerminal) {
 
 TEST(MjpgDecoder, ASizeAgreedToAnewIsTaken) {
   MjpgDecoder decoder({.width = 16, .height = 16, .gray_is_enough = true});
-  EXPECT_EQ(decoded(decoder, jpeg_of(textured(64, 48)), 64, 48).cols, 24);
+  EXPECT_EQ(decoded(decoder, jpeg_of(textured(64, 48)), 64, 48).cols, 32);
   EXPECT_EQ(decoded(decoder, jpeg_of(textured(320, 240)), 320, 240).cols, 40);
-  EXPECT_EQ(decoded(decoder, jpeg_of(textured(64, 48)), 64, 48).cols, 24);
+  EXPECT_EQ(decoded(decoder, jpeg_of(textured(64, 48)), 64, 48).cols, 32);
 }
 
 /// Any bytes at all: a picture of the right size or a fault, and nothing read behind the bytes.

@@ -12,9 +12,9 @@ TEST(CameraDecoder, TakesWhateverACameraSends) {
   const auto describer = opencv::make_builtin_describer();
   CameraDecoder decoder(describer->needs());
   Image image;
-  const test::Bytes jpeg = test::jpeg_of(test::textured(640, 480));
-  ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 640, 480), image), "");
-  EXPECT_EQ(image.width, 320);  // the smallest that holds twice 128x64
+  const test::Bytes jpeg = test::jpeg_of(test::textured(1280, 720));
+  ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 1280, 720), image), "");
+  EXPECT_EQ(image.width, 640);  // a quarter would be less than four times 128x64
   EXPECT_EQ(image.format, PixelFormat::gray8);
   const test::Bytes yuyv(std::size_t{640} * 480 * 2, 100);
   ASSERT_EQ(decoder.decode({yuyv, 640, 480, 1280, RawFormat::yuyv}, image), "");
@@ -27,7 +27,7 @@ TEST(CameraDecoder, MakesColourWhereThatIsNeeded) {
   Image image;
   const test::Bytes jpeg = test::jpeg_of(test::textured(640, 480));
   ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 640, 480), image), "");
-  EXPECT_EQ(image.height, 480);  // seven eighths are less than twice 224
+  EXPECT_EQ(image.height, 480);  // half of it is less than four times 224
   EXPECT_EQ(image.format, PixelFormat::bgr8);
   const test::Bytes nv12(std::size_t{640} * 480 * 3 / 2, 100);
   ASSERT_EQ(decoder.decode({nv12, 640, 480, 640, RawFormat::nv12}, image), "");

@@ -1,0 +1,112 @@
+# What the guest's cases share. The machine's tests set SEQLOOP, the program, and FEEDER,
+# v4l2-feeder; the machine sets MODULES, OUT and WORK.
+set -u
+set +m
+cd "$WORK"
+failed=0
+
+# run_case NAME: runs the function of that name; prints PASS, or FAIL with all that was not as expected
+run_case() {
+  why= lines=/dev/null log=/dev/null live=
+  local start=$SECONDS
+  "$1"
+  stop_live
+  no_cameras
+  if [ -z "$why" ]; then
+    echo "PASS $1 ($((SECONDS - start)) s)"
+  else
+    echo "FAIL $1: $why"
+    tail -n 4 "$log" "$lines" | cut -c -300
+    failed=$((failed + 1))
+  fi
+}
+
+# expect WHAT COMMAND...: the case fails, saying WHAT, unless the command succeeds
+expect() {
+  local what=$1
+  shift
+  "$@" && return
+  why="${why:+$why; }not so: $what"
+  return 1
+}
+
+# within SECONDS COMMAND...: waits until the command succeeds, but no longer than the live run lasts
+within() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    ((SECONDS < end)) || return 1
+    [ -z "$live" ] || ! is_over || end=0
+    sleep 0.1
+  done
+}
+
+insert() { modprobe -d "$MODULES" "$@"; }
+
+# camera MODULE_SETTINGS...: vivid's camera, anew, as /dev/video0 unless told otherwise
+camera() {
+  modprobe -d "$MODULES" -r vivid 2>/dev/null
+  insert vivid n_devs=1 node_types=0x1 num_inputs=1 input_types=0 "$@"
+}
+control() { v4l2-ctl -d /dev/video0 -c "$1"; }
+no_cameras() { modprobe -q -d "$MODULES" -r v4l2loopback vivid; }
+
+# live FLAGS...: `seqloop run` in the background, its lines in $lines, its log in $log
+live() {
+  lines=$WORK/live.jsonl log=$WORK/live.log
+  : >"$lines"
+  # The shell's & makes programs ignore SIGINT.
+  env --default-signal=INT "$SEQLOOP" run "$@" >"$lines" 2>"$log" &
+  live=$!
+}
+is_over() { ! kill -0 "$live" 2>/dev/null; }
+stop_live() {
+  [ -n "$live" ] || return
+  kill -TERM "$live" 2>/dev/null
+  expect "it stops at SIGTERM" within 10 is_over || kill -KILL "$live"
+  wait "$live"
+  live=
+}
+
+# ends CODE: the live run ends by itself, soon, with that exit code
+ends() {
+  within 20 is_over || return 1
+  wait "$live"
+  local code=$?
+  live=
+  [ "$code" = "$1" ] || { echo "exit code $code"; return 1; }
+}
+
+# holds DEVICE: the live run has it open
+holds() { ls -l "/proc/$live/fd" 2>/dev/null | grep -q "$1\$"; }
+
+# count_of STATUS [FILE], good_lines [FILE]: lines with the status; lines of frames that were searched with
+count_of() { grep -c "\"status\":\"$1\"" "${2:-$lines}"; }
+good_lines() { grep -c '"status":"\(warming_up\|no_candidate\|not_unique\|match\)"' "${1:-$lines}"; }
+all_lines() { wc -l <"$lines"; }
+
+# has N COUNT...: the count is at least N; is N COUNT...: exactly
+has() { local n=$1; shift; [ "$("$@")" -ge "$n" ]; }
+is() { local n=$1; shift; [ "$("$@")" = "$n" ]; }
+
+# good_again: five more frames that were searched with, soon
+good_again() { local before; before=$(good_lines); within 15 has $((before + 5)) good_lines; }
+
+# last KEY: its value in the last line; most KEY: the highest in all lines
+values() { grep -o "\"$1\":-\?[0-9.e+]*" "$lines" | cut -d: -f2; }
+last() { values "$1" | tail -n 1; }
+most() { values "$1" | sort -g | tail -n 1; }
+# below A B: as numbers
+below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && a < b) }'; }
+
+# refused CODE TEXT FLAGS...: `seqloop run` does not start, and says so in one line with TEXT in it
+refused() {
+  local code=$1 text=$2
+  shift 2
+  log=$WORK/refused.log
+  timeout 30 "$SEQLOOP" run --frames 5 "$@" >/dev/null 2>"$log"
+  local got=$?
+  [ "$got" = "$code" ] || { echo "exit code $got"; return 1; }
+  grep -qi "^seqloop: .*$text" "$log"
+}
+finish() { exit $((failed > 0)); }
