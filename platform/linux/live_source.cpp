@@ -57,11 +57,13 @@ void LiveSource::capture() noexcept {
   started_.count_down();
   if (failed) return;
   do {
+    // Before the device is asked, so that what the reader finishes with meanwhile is not out beside
+    // another one: one frame is read, one waits, and one is being brought.
+    take_back_finished();
     doing_.store(Doing::asking_for_a_frame, std::memory_order_relaxed);
     device_->next(frames_.writing(), stopping_);
     rounds_.fetch_add(1, std::memory_order_relaxed);
     doing_.store(Doing::giving_back, std::memory_order_relaxed);
-    take_back_finished();
   } while (pass_on(frames_.writing()) && !stopping_.load(std::memory_order_relaxed));
 }
 

@@ -18,8 +18,8 @@ constexpr double default_rate = 25.0;   // frames a second, where the file does 
 constexpr double largest_count = 1e12;  // some backends report 2^63 for "unknown"
 
 /// Left to choose, OpenCV also takes a file for an image sequence and looks for cameras on the USB.
-constexpr std::array<cv::VideoCaptureAPIs, 3> backends{cv::CAP_FFMPEG, cv::CAP_GSTREAMER,
-                                                       cv::CAP_OPENCV_MJPEG};
+/// GStreamer writes to stderr by itself and leaks, for nothing that FFmpeg cannot read.
+constexpr std::array<cv::VideoCaptureAPIs, 2> backends{cv::CAP_FFMPEG, cv::CAP_OPENCV_MJPEG};
 
 }  // namespace
 

@@ -31,23 +31,6 @@ class FakeDescriber : public Describer {
   oracle::Vectors drive_;
 };
 
-/// Asks again when a source is silent, and counts how often it was.
-class PatientSource : public FrameSource {
- public:
-  explicit PatientSource(FrameSource& source) : source_(&source) {}
-  [[nodiscard]] Grab grab(Frame& frame) noexcept override {
-    Grab grab = source_->grab(frame);
-    for (; grab == Grab::silent; grab = source_->grab(frame)) ++silences_;
-    return grab;
-  }
-  [[nodiscard]] std::optional<std::uint64_t> frame_count() const noexcept override { return {}; }
-  [[nodiscard]] std::uint64_t silences() const noexcept { return silences_; }
-
- private:
-  FrameSource* source_;
-  std::uint64_t silences_ = 0;
-};
-
 inline Pipeline pipeline_of(FrameSource& source, Describer& describer, Detector& detector,
                             Clock& clock) {
   return {source, &describer, detector, clock, describer.size()};
