@@ -1,14 +1,17 @@
 #include "files/output_file.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -21,15 +24,6 @@ constexpr std::size_t buffer_bytes = std::size_t{64} * 1024;
 constexpr int most_tries = 100;
 
 std::string reason(int error) { return std::generic_category().message(error); }
-
-void write_all(int descriptor, std::span<const std::byte> bytes, const std::string& name) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw IoError(name, "cannot be written: " + reason(errno));
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-}
 
 /// Nothing is ever created or replaced in the folders in which the kernel shows itself.
 bool in_system_folder(const std::filesystem::path& path) {
@@ -132,31 +126,64 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 void OutputFile::overwrite_start(std::span<const std::byte> bytes) {
   flush();
   const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), 0);
-  if (written < 0) throw IoError(path_.string(), "cannot be written again: " + reason(errno));
+  if (written < 0) throw IoError(name(), "cannot be written again: " + reason(errno));
   if (static_cast<std::size_t>(written) != bytes.size())
-    throw IoError(path_.string(), "cannot be written: the disk took only a part");
+    throw IoError(name(), "cannot be written: the disk took only a part");
 }
 
 void OutputFile::flush() {
-  const std::size_t count = std::exchange(buffered_, 0);
-  write_all(descriptor_, std::span(buffer_).first(count), path_.string());
+  auto bytes = std::span<const std::byte>(buffer_).first(std::exchange(buffered_, 0));
+  while (!bytes.empty()) {
+    std::size_t count = bytes.size();
+    if (give_up_ != nullptr && partial_.empty()) {
+      wait_for_reader();
+      count = std::min<std::size_t>(count, PIPE_BUF);  // so much does not block now
+    }
+    const ssize_t written = ::write(descriptor_, bytes.data(), count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw IoError(name(), "cannot be written: " + reason(errno));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
 }
+
+std::filesystem::path OutputFile::keep_incomplete() noexcept {
+  if (partial_.empty() || descriptor_ < 0) return {};
+  try {
+    const std::filesystem::path kept = path_.string() + ".incomplete";
+    if (std::rename(partial_.c_str(), kept.c_str()) != 0) return {};
+    partial_.clear();
+    ::close(std::exchange(descriptor_, -1));
+    return kept;
+  } catch (const std::bad_alloc&) {
+    return {};
+  }
+}
+
+void OutputFile::wait_for_reader() const {
+  constexpr int slice_ms = 50;
+  pollfd poll{descriptor_, POLLOUT, 0};
+  while (::poll(&poll, 1, slice_ms) <= 0) {
+    if (give_up_()) throw IoError(name(), "cannot be written: nobody reads it");
+  }
+}
+
+std::string OutputFile::name() const { return path_ == "-" ? "standard output" : path_.string(); }
 
 void OutputFile::commit() {
   flush();
   if (!partial_.empty() && ::fsync(descriptor_) != 0)
-    throw IoError(path_.string(), "cannot be written to the disk: " + reason(errno));
+    throw IoError(name(), "cannot be written to the disk: " + reason(errno));
   // After a failed close nobody knows what reached the disk, so that is a failed write too.
   const int closed = ::close(std::exchange(descriptor_, -1));
   const int close_error = errno;
   if (partial_.empty()) {
-    if (closed != 0) throw IoError(path_.string(), "cannot be closed: " + reason(close_error));
+    if (closed != 0) throw IoError(name(), "cannot be closed: " + reason(close_error));
     return;
   }
   if (closed == 0 && std::rename(partial_.c_str(), path_.c_str()) == 0) return;
   const int error = closed != 0 ? close_error : errno;
   ::unlink(partial_.c_str());
-  throw IoError(path_.string(), "cannot be completed: " + reason(error));
+  throw IoError(name(), "cannot be completed: " + reason(error));
 }
 
 }  // namespace seqloop::files

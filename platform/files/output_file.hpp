@@ -49,7 +49,16 @@ class OutputFile {
   /// Throws IoError.
   void commit();
 
+  /// After a write that failed: keeps what was written before it, as `NAME.incomplete`.
+  /// @return that name; empty where nothing is kept: the file is written directly, or cannot be
+  ///   renamed. The last call.
+  std::filesystem::path keep_incomplete() noexcept;
+
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+  /// From now on, a pipe that nobody reads is not waited for without end: `give_up` is asked every
+  /// 50 ms, and once it says so, writing throws IoError.
+  void heed(bool (*give_up)() noexcept) noexcept { give_up_ = give_up; }
 
   /// Whether `overwrite_start` works and means this file's own start: not in a pipe, and not in a
   /// standard output that appends or has been written before. To be asked before the first write.
@@ -57,12 +66,15 @@ class OutputFile {
 
  private:
   void open_beside();
+  void wait_for_reader() const;
+  [[nodiscard]] std::string name() const;
 
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< empty when the file is written directly
   std::vector<std::byte> buffer_;
   std::size_t buffered_ = 0;  ///< bytes of buffer_ in use
   int descriptor_ = -1;
+  bool (*give_up_)() noexcept = nullptr;
 };
 
 }  // namespace seqloop::files

@@ -8,7 +8,6 @@
 
 #include "linux/capture_start.hpp"
 #include "linux/error_text.hpp"
-#include "linux/find_camera.hpp"
 #include "linux/refusal_text.hpp"
 
 namespace seqloop::live {
@@ -208,6 +207,9 @@ bool Camera::take_frame(Captured& captured, bool broken) noexcept {
   if (taken.other_format && stream_->format_changed()) {
     ++troubles_;
     lose("the camera changed its format");
+  } else if (captured.arrived - last_frame_ >=
+             static_cast<std::int64_t>(silences_ + 1) * options_.timeout) {
+    act_on_silence("only damaged frames come");
   }
   return true;
 }
@@ -215,16 +217,14 @@ bool Camera::take_frame(Captured& captured, bool broken) noexcept {
 void Camera::fill(Captured& captured, const Dequeued& taken) noexcept {
   captured.arrived = clock_.now();
   captured.sequence = taken.sequence;
-  captured.index = numbers_.index_of(taken.sequence);
   captured.delivered = counters_.frames + counters_.bad;
   const FrameStamps::Judged judged = stamps_.judge(taken.stamp, taken.monotonic, captured.arrived);
-  captured.stamp = judged.stamp;
+  if (numbers_.starts_anew()) numbers_.lose(frames_between(last_stamp_, judged.stamp));
+  captured.index = numbers_.index_of(taken.sequence);
+  captured.stamp = last_stamp_ = judged.stamp;
   if (first_stamp_ < Nanoseconds(0)) first_stamp_ = judged.stamp;
   captured.time_s = std::chrono::duration<double>(judged.stamp - first_stamp_).count();
   if (judged.tell) remark(to_string(judged.odd));
-  last_frame_ = captured.arrived;
-  silences_ = 0;
-  silences_to_act_ = silences_before_restart;
   if (!taken.fault.empty()) {
     ++counters_.bad;
     captured.what = Capture::bad_frame;
@@ -232,12 +232,23 @@ void Camera::fill(Captured& captured, const Dequeued& taken) noexcept {
     return;
   }
   ++counters_.frames;
+  last_frame_ = captured.arrived;
   troubles_ = 0;
+  silences_ = 0;
+  silences_to_act_ = silences_before_restart;
   captured.what = Capture::frame;
   const CameraMode& mode = stream_->mode();
   captured.picture = {taken.bytes, mode.width, mode.height, stream_->stride(), mode.format};
   captured.buffer = generation_ * slots + taken.slot;
   captured.remark = std::exchange(remark_, {});
+}
+
+/// @return how many frames fit between two, at the camera's rate
+std::uint64_t Camera::frames_between(Nanoseconds before, Nanoseconds after) const noexcept {
+  const double told = rate(stream_->mode());
+  const double intervals = std::chrono::duration<double>(after - before).count() *
+                           (told > 0.0 ? told : options_.wish.rate);
+  return intervals < 1.5 ? 0 : static_cast<std::uint64_t>(intervals - 0.5);
 }
 
 void Camera::remark(std::string_view text) noexcept {
@@ -251,13 +262,18 @@ void Camera::tell_silent(Captured& captured) noexcept {
   const Digits milliseconds(static_cast<std::uint64_t>(silent / Milliseconds(1)));
   captured.what = Capture::silent;
   captured.fault.assign({"no frame from ", facts_.path, " for ", milliseconds.view(), " ms"});
+  act_on_silence(captured.fault.view());
+}
+
+/// Another time-out has gone by without a good frame.
+void Camera::act_on_silence(std::string_view why) noexcept {
   if (++silences_ < silences_to_act_) return;
   const bool first = silences_to_act_ == silences_before_restart;
   silences_to_act_ += std::min(silences_to_act_, most_silences_between);
   if (first) {
-    restart_or_lose(captured.fault.view());
+    restart_or_lose(why);
   } else {
-    lose(captured.fault.view());
+    lose(why);
   }
 }
 

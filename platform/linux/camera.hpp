@@ -11,6 +11,7 @@
 
 #include "linux/camera_mode.hpp"
 #include "linux/capture_stream.hpp"
+#include "linux/find_camera.hpp"
 #include "linux/frame_numbers.hpp"
 #include "linux/frame_stamps.hpp"
 #include "linux/system_calls.hpp"
@@ -33,7 +34,8 @@ struct CameraOptions {
 struct CameraCounters {
   std::uint64_t frames = 0;      ///< good ones
   std::uint64_t bad = 0;         ///< damaged ones
-  std::uint64_t missed = 0;      ///< gaps in the device's numbers
+  std::uint64_t missed = 0;      ///< gaps in the device's numbers, and what would have come while
+                                 ///< there was no stream
   std::uint64_t silences = 0;    ///< time-outs without a frame
   std::uint64_t restarts = 0;    ///< of the stream, on the same device
   std::uint64_t reopenings = 0;  ///< of the device
@@ -52,16 +54,17 @@ struct CameraFacts {
 
 /// A V4L2 camera that heals itself.
 ///
-/// | what happens | what is done |
-/// |---|---|
-/// | no frame in time | `silent`; after 3 the stream is started anew, after 6, 12, ... opened anew
-/// | | waiting or dequeuing fails | the stream is started anew; if that is not enough, opened anew
-/// | | the device is gone | `lost`; it is looked for, also under other names (`find_camera`) | |
-/// another format behind our back | opened anew, in the mode that is the best now | | a damaged,
-/// short or empty frame | `bad_frame`; it counts as a frame | | odd time stamps | the time of
-/// arrival instead; a remark when that begins |
+/// - No frame in time: `silent`; after 3 the stream is started anew, after 6, 12, ... it is opened
+///   anew. Likewise where only damaged frames come.
+/// - Waiting or taking a frame fails: the stream is started anew; if that is not enough, opened
+/// anew.
+/// - The device is gone: `lost`; it is looked for, also under other names (`find_camera`).
+/// - Another format behind our back: opened anew, in the mode that is the best now.
+/// - A damaged, short or empty frame: `bad_frame`; it counts as a frame.
+/// - Odd time stamps: the time of arrival instead; a remark when that begins.
 ///
-/// A device that fails again before it brought a good frame is tried again once in the retry
+/// Frames that would have come while there was no stream count as lost, by the time that has gone
+/// by. A device that fails again before it brought a good frame is tried again once in the retry
 /// interval, for ever. What was done is told in the next frame's remark. Frames that are out stay
 /// readable, whatever becomes of the device.
 class Camera : public CaptureDevice {
@@ -101,7 +104,9 @@ class Camera : public CaptureDevice {
   [[nodiscard]] bool capture(Captured& captured, Nanoseconds deadline) noexcept;
   [[nodiscard]] bool take_frame(Captured& captured, bool broken) noexcept;
   void fill(Captured& captured, const Dequeued& taken) noexcept;
+  [[nodiscard]] std::uint64_t frames_between(Nanoseconds before, Nanoseconds after) const noexcept;
   void tell_silent(Captured& captured) noexcept;
+  void act_on_silence(std::string_view why) noexcept;
   void tell_lost(Captured& captured, Nanoseconds now) noexcept;
   void remark(std::string_view text) noexcept;
   void pause(Nanoseconds until) noexcept;
@@ -116,7 +121,7 @@ class Camera : public CaptureDevice {
   std::unique_ptr<CaptureStream> stream_;  ///< none while the device is lost
   std::vector<Retired> retired_;
   std::uint32_t generation_ = 0;  ///< of the stream, so that frames find back to theirs
-  std::size_t twins_ = 1;
+  Twins twins_;
 
   // Since the last good frame.
   std::uint32_t troubles_ = 0;
@@ -130,6 +135,7 @@ class Camera : public CaptureDevice {
   FixedText loss_;    ///< why the device was given up
   FixedText remark_;  ///< for the next frame
   Nanoseconds first_stamp_{-1};
+  Nanoseconds last_stamp_{0};
 };
 
 }  // namespace seqloop::live

@@ -177,8 +177,12 @@ Dequeued CaptureStream::dequeue() noexcept {
   if (taken.error != 0) return taken;
   const v4l2_buffer& filled = buffer.buffer;
   taken.sequence = filled.sequence;
-  taken.stamp = std::chrono::seconds(filled.timestamp.tv_sec) +
-                std::chrono::microseconds(filled.timestamp.tv_usec);
+  // What is centuries ahead is odd enough without its exact value, which nanoseconds cannot hold.
+  constexpr std::int64_t most_seconds = 9'000'000'000;
+  taken.stamp =
+      std::chrono::seconds(
+          std::clamp<std::int64_t>(filled.timestamp.tv_sec, -most_seconds, most_seconds)) +
+      std::chrono::microseconds(std::clamp<std::int64_t>(filled.timestamp.tv_usec, 0, 999'999));
   taken.monotonic =
       (filled.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
   const std::uint32_t index = filled.index;

@@ -26,7 +26,7 @@ bool is_link(SystemCalls& system, const std::string& path) {
 }  // namespace
 
 std::string find_camera(SystemCalls& system, const std::string& path,
-                        const CameraIdentity& identity, std::size_t twins) {
+                        const CameraIdentity& identity, const Twins& twins) {
   if (is_link(system, path)) return path;
   std::array<std::vector<std::string>, same + 1> like;
   for (const std::string& candidate : video_paths(system)) {
@@ -39,22 +39,25 @@ std::string find_camera(SystemCalls& system, const std::string& path,
     const bool at_home = std::ranges::find(like[same], path) != like[same].end();
     return at_home ? path : like[same].front();
   }
-  if (like[same_serial_or_place].size() == 1) return like[same_serial_or_place].front();
-  if (like[same_kind].size() == 1 && twins <= 1) return like[same_kind].front();
+  if (like[same_serial_or_place].size() == 1 && twins.serial <= 1) {
+    return like[same_serial_or_place].front();
+  }
+  if (like[same_kind].size() == 1 && twins.kind <= 1) return like[same_kind].front();
   return {};
 }
 
-std::size_t count_twins(SystemCalls& system, const CameraIdentity& identity) {
-  std::size_t twins = 0;
+Twins count_twins(SystemCalls& system, const CameraIdentity& identity) {
+  Twins twins{0, 0};
   for (const std::string& path : video_paths(system)) {
     const auto node = open_node(system, path);
     const auto* const camera = std::get_if<VideoNode>(&node);
     if (camera == nullptr) continue;
     const CameraIdentity& other = camera->identity;
-    if (other.driver == identity.driver && other.card == identity.card &&
-        other.index == identity.index) {
-      ++twins;
-    }
+    const bool same_kind = other.driver == identity.driver && other.card == identity.card &&
+                           other.index == identity.index;
+    if (!same_kind) continue;
+    ++twins.kind;
+    if (other.serial == identity.serial) ++twins.serial;
   }
   return twins;
 }

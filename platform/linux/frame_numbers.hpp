@@ -26,6 +26,15 @@ class FrameNumbers {
   /// The stream started anew: the next frame follows the last one, whatever its number.
   void restart() noexcept { running_ = false; }
 
+  /// Whether the next frame is the first of a stream, but not the first of all.
+  [[nodiscard]] bool starts_anew() const noexcept { return !running_ && next_ > 0; }
+
+  /// Frames that would have come while there was no stream.
+  void lose(std::uint64_t frames) noexcept {
+    next_ += frames;
+    missed_ += frames;
+  }
+
   /// Frames that the device lost, in all.
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
 

@@ -75,14 +75,30 @@ bool LiveSource::pass_on(Captured& captured) noexcept {
   }
   delivered_.store(captured.delivered + 1, std::memory_order_relaxed);
   lost_.store(captured.index - captured.delivered, std::memory_order_relaxed);
-  if (captured.index % every_.load(std::memory_order_relaxed) != 0) {
-    give_back(captured);
+  const std::uint32_t every = every_.load(std::memory_order_relaxed);
+  if (captured.index < take_from_ && every > 1) {
+    drop(captured);
     return true;
+  }
+  take_from_ = captured.index - captured.index % every + every;
+  if (!untold_.empty()) {
+    if (!captured.remark.empty()) untold_.append("; ");
+    untold_.append(captured.remark.view());
+    captured.remark = std::exchange(untold_, {});
   }
   Captured& before = frames_.publish();
   wake_up_.call();
-  give_back(before);
+  drop(before);
   return true;
+}
+
+/// Gives a frame back that nobody has taken. What was odd about it is told with the next one.
+void LiveSource::drop(Captured& captured) noexcept {
+  if (is_frame(captured) && !captured.remark.empty()) {
+    if (!untold_.empty()) untold_.append("; ");
+    untold_.append(captured.remark.view());
+  }
+  give_back(captured);
 }
 
 void LiveSource::pass_on_event(const Captured& captured) noexcept {
@@ -148,8 +164,13 @@ Grab LiveSource::grab(Frame& frame) noexcept {
 Grab LiveSource::take_up(Frame& frame, Nanoseconds began) noexcept {
   const Captured& captured = frames_.reading();
   const Nanoseconds now = clock_->now();
-  frame.index = captured.index;
-  frame.time_s = captured.time_s;
+  if (taken_ == 0 && settings_.from_first_taken) {
+    first_index_ = next_index_ = captured.index;
+    first_delivered_ = next_delivered_ = captured.delivered;
+    first_time_s_ = captured.time_s;
+  }
+  frame.index = captured.index - first_index_;
+  frame.time_s = captured.time_s - first_time_s_;
   frame.dropped = captured.delivered - next_delivered_;
   frame.lost = captured.index - next_index_ - frame.dropped;
   frame.sequence = captured.sequence;
@@ -195,13 +216,16 @@ Grab LiveSource::tell_hang(Frame& frame, Nanoseconds since) noexcept {
 
 LiveCounts LiveSource::counts() const noexcept {
   LiveCounts counts;
-  counts.delivered = delivered_.load(std::memory_order_relaxed);
+  const bool none_taken = taken_ == 0 && settings_.from_first_taken;
+  const std::uint64_t delivered = delivered_.load(std::memory_order_relaxed);
+  counts.delivered = none_taken ? 0 : delivered - first_delivered_;
   counts.taken = taken_;
   // After the last frame there is nothing that may yet be taken.
   const bool over = !thread_.joinable() || (event_waits_ && events_.reading().what == Capture::end);
   counts.dropped = over ? counts.delivered - taken_ : dropped_;
   counts.failed = failed_;
-  counts.lost = lost_.load(std::memory_order_relaxed);
+  counts.lost =
+      none_taken ? 0 : lost_.load(std::memory_order_relaxed) - (first_index_ - first_delivered_);
   counts.silences = silences_.load(std::memory_order_relaxed) + hangs_;
   return counts;
 }

@@ -24,6 +24,9 @@ struct LiveSettings {
   Nanoseconds hang_timeout = std::chrono::seconds(5);
   /// Asked every 50 ms while `grab` waits; once it says so, `grab` brings `end`. May be null.
   bool (*stop)() noexcept = nullptr;
+  /// What came before the first frame that is taken counts for nothing: a camera delivers while its
+  /// user is still being set up.
+  bool from_first_taken = false;
   /// Run by the capture thread before anything else: real-time set-up. What it throws, the
   /// constructor of the source throws.
   std::function<void()> at_start = {};
@@ -70,8 +73,8 @@ class LiveSource : public FrameSource {
 
   [[nodiscard]] std::optional<std::uint64_t> frame_count() const noexcept override { return {}; }
 
-  /// From now on, takes only frames whose index is a multiple of `n`; the others go back to the
-  /// device at once and count as dropped. Any thread may call it. @param n >= 1
+  /// From now on, of every `n` indices takes one; the other frames go back to the device at once
+  /// and count as dropped. Any thread may call it. @param n >= 1
   void take_every(std::uint32_t n) noexcept { every_.store(n, std::memory_order_relaxed); }
 
   /// Ends the capture thread and gives everything back, the frame of the last grab too. Then every
@@ -85,6 +88,7 @@ class LiveSource : public FrameSource {
 
   void capture() noexcept;
   [[nodiscard]] bool pass_on(Captured& captured) noexcept;
+  void drop(Captured& captured) noexcept;
   void pass_on_event(const Captured& captured) noexcept;
   void give_back(Captured& captured) noexcept;
   void take_back_finished() noexcept;
@@ -111,10 +115,17 @@ class LiveSource : public FrameSource {
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> silences_{0};
 
+  // The capture thread's.
+  std::uint64_t take_from_ = 0;  // index from which on the next frame is taken
+  FixedText untold_;             // remarks of frames that were dropped
+
   // The work thread's.
-  std::uint64_t next_index_ = 0;      // of the frame after the last taken, were none missing
-  std::uint64_t next_delivered_ = 0;  // likewise
-  bool event_waits_ = false;          // in events_.reading(), not told yet
+  std::uint64_t next_index_ = 0;       // of the frame after the last taken, were none missing
+  std::uint64_t next_delivered_ = 0;   // likewise
+  std::uint64_t first_index_ = 0;      // of the first taken, where all counts from there
+  std::uint64_t first_delivered_ = 0;  // likewise
+  double first_time_s_ = 0.0;          // likewise
+  bool event_waits_ = false;           // in events_.reading(), not told yet
   FixedText hang_;
   std::uint64_t taken_ = 0;
   std::uint64_t dropped_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 namespace seqloop::live {
 namespace {
@@ -26,10 +27,27 @@ void RecordingCapture::next(Captured& captured, const std::atomic<bool>& /*stop*
     clock_->sleep_until(std::min(ahead_->stamp, now + slice));
     ahead_->arrived = clock_->now();
     if (ahead_->arrived < ahead_->stamp) return;
+    if (passes_over()) return;
     ahead_->delivered = delivered_++;
   }
   captured = *ahead_;
   if (captured.what != Capture::end) ahead_.reset();
+}
+
+/// Drops the frame that is ahead where it comes too late.
+bool RecordingCapture::passes_over() noexcept {
+  constexpr int kept_frames = 4;
+  constexpr int most_in_a_row = 9;
+  const Nanoseconds interval = ahead_->stamp - std::exchange(last_stamp_, ahead_->stamp);
+  const bool late = ahead_->arrived - ahead_->stamp > kept_frames * interval;
+  if (!late || ahead_->index == 0 || passed_over_ == most_in_a_row) {
+    passed_over_ = 0;
+    return false;
+  }
+  ++passed_over_;
+  give_back(*ahead_);
+  ahead_.reset();
+  return true;
 }
 
 void RecordingCapture::give_back(const Captured& captured) noexcept {

@@ -13,8 +13,10 @@ namespace seqloop::live {
 /// Plays a recording as if it were a camera: no frame comes before its time, and who is too slow
 /// misses frames. The first frame's time is when it has been read.
 ///
-/// While a frame is out, the next one is read. A reader that is too slow for the recording's rate
-/// shows as frames that arrive after their stamp, which is the time at which they were due.
+/// While a frame is out, the next one is read. A frame's stamp is the time at which it was due. One
+/// that is later than a camera's buffers would have kept it (four frames) is lost, as a camera
+/// would have lost it; but never more than nine in a row, since a recording that cannot be read at
+/// its own rate would bring nothing then.
 class RecordingCapture : public CaptureDevice {
  public:
   /// @param recording, clock live longer; the recording is the capture thread's until that has
@@ -36,6 +38,7 @@ class RecordingCapture : public CaptureDevice {
   };
 
   void read_ahead() noexcept;
+  [[nodiscard]] bool passes_over() noexcept;
   void keep(const Frame& frame);
 
   FrameSource* recording_;
@@ -45,6 +48,8 @@ class RecordingCapture : public CaptureDevice {
   std::optional<Captured> ahead_;     // read, not yet due
   double newest_time_s_ = 0.0;
   std::uint64_t delivered_ = 0;
+  Nanoseconds last_stamp_{0};
+  int passed_over_ = 0;  // in a row
 };
 
 }  // namespace seqloop::live

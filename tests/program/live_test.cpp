@@ -38,20 +38,18 @@ TEST_F(Live, EveryFrameOfTheRecordingIsTakenOrCounted) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Json summary = json("s.json");
   std::uint64_t frames = 0;
-  std::uint64_t dropped = 0;
+  std::uint64_t missing = 0;
   for (const Json& line : lines("r.jsonl")) {
     ++frames;
-    dropped += line["dropped"].get<std::uint64_t>();
+    missing += line["dropped"].get<std::uint64_t>() + line["lost"].get<std::uint64_t>();
     EXPECT_GE(line["age_ms"].get<double>(), 0.0);
-    EXPECT_EQ(line["lost"], 0);
-    EXPECT_LE(line["newest"].get<std::uint64_t>() + 1, frames + dropped)
-        << "dropped frames keep their numbers, unless they are more than a window";
+    EXPECT_EQ(line["newest"].get<std::uint64_t>() + 1, frames + missing)
+        << "frames have the recording's own numbers";
   }
   EXPECT_EQ(summary["frames"], frames);
-  EXPECT_EQ(summary["captured"]["grabbed"], 120);
-  EXPECT_EQ(summary["captured"]["taken"].get<std::uint64_t>() +
-                summary["captured"]["dropped"].get<std::uint64_t>(),
-            120U);
+  const auto count = [&](const char* name) { return summary["captured"][name].get<int>(); };
+  EXPECT_EQ(count("grabbed") + count("lost"), 120);
+  EXPECT_EQ(count("grabbed"), count("taken") + count("dropped"));
   for (const char* stage : {"grab", "describe", "match", "total", "age", "answer"}) {
     std::uint64_t counted = 0;
     for (const Json& bucket : summary["stages"][stage]["buckets"]) {
@@ -59,7 +57,7 @@ TEST_F(Live, EveryFrameOfTheRecordingIsTakenOrCounted) {
     }
     EXPECT_EQ(counted, frames) << stage;
   }
-  EXPECT_NE(outcome.err.find("120 grabbed"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(" grabbed: "), std::string::npos) << outcome.err;
 }
 
 TEST_F(Live, AnOverloadedLoopSaysSoAndThinsOutAsDeclared) {
@@ -79,13 +77,14 @@ TEST_F(Live, AnOverloadedLoopSaysSoAndThinsOutAsDeclared) {
       EXPECT_EQ(overloaded, 0U) << "no frame can be within this budget";
     }
   }
-  EXPECT_GT(overloaded, 20U);
+  EXPECT_GT(overloaded, 3U);
   const Json summary = json("s.json");
   EXPECT_EQ(summary["overload"]["policy"], "every-nth");
   EXPECT_EQ(summary["overload"]["times"], 1);
   EXPECT_EQ(summary["overload"]["frames"], overloaded);
   EXPECT_EQ(summary["misses"], summary["frames"]);
-  EXPECT_GT(summary["captured"]["dropped"], 100) << "two of three";
+  EXPECT_EQ(summary["missed"]["total"], summary["misses"]);
+  EXPECT_GT(summary["captured"]["dropped"].get<std::uint64_t>(), overloaded) << "two of three";
   EXPECT_NE(outcome.err.find("taking one frame of 3"), std::string::npos) << outcome.err;
 }
 
@@ -103,6 +102,21 @@ TEST_F(Live, AtMaximalPaceNothingIsDroppedAndThereIsNoAge) {
   EXPECT_EQ(summary["frames"], 60);
   EXPECT_FALSE(summary.contains("captured"));
   EXPECT_FALSE(summary["stages"].contains("age"));
+}
+
+TEST_F(Live, AReaderThatStoppedReadingDoesNotKeepItFromStopping) {
+  write_drive("q.npy", 3000);
+  // 3,000 lines do not fit into a pipe; the program is stopped while it waits for the reader.
+  folder_.write("stop.sh",
+                "mkfifo pipe\nsleep 30 <pipe &\n"
+                "timeout --preserve-status -s TERM 2 '" SEQLOOP_BINARY
+                "' run --source q.npy --ds 5 --exclude 20 --summary s.json >pipe 2>err.txt\n"
+                "echo $? >code.txt\nkill %1\n");
+  static_cast<void>(
+      std::system(("cd '" + folder_.path().string() + "' && bash stop.sh 2>/dev/null").c_str()));
+  EXPECT_EQ(test::read_all(file("code.txt")), "1\n") << test::read_all(file("err.txt"));
+  EXPECT_NE(test::read_all(file("err.txt")).find("nobody reads it"), std::string::npos);
+  EXPECT_GT(json("s.json")["frames"], 10) << "the summary is there all the same";
 }
 
 TEST_F(Live, StopsAfterAsManyFramesAsAskedFor) {

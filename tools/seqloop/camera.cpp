@@ -20,8 +20,7 @@ namespace seqloop::program {
 namespace {
 
 // What the built-in descriptor takes in: the mode is the one that `run` would take.
-constexpr int least_width = 128;
-constexpr int least_height = 64;
+constexpr PictureNeeds built_in{.width = 128, .height = 64, .gray_is_enough = true};
 constexpr Nanoseconds patience = std::chrono::seconds(10);
 
 struct CameraVerbSettings {
@@ -88,8 +87,8 @@ bool capture(live::Camera& camera, Clock& clock, std::size_t frames, FrameTimes&
 
 void measure(const CameraVerbSettings& settings, std::size_t frames) {
   take_interruptions();
-  const live::CameraOptions options = camera_options(
-      settings.camera, device_of(settings), least_width, least_height, false, settings.fps);
+  const live::CameraOptions options =
+      camera_options(settings.camera, device_of(settings), built_in, settings.fps);
   live::SteadyClock clock;
   live::Camera camera(options, live::system_calls(), clock);
   FrameTimes times;

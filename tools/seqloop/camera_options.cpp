@@ -1,5 +1,7 @@
 #include "seqloop/camera_options.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "linux/pixel_format.hpp"
@@ -22,13 +24,27 @@ void add_camera_options(OptionTable& options, CameraSettings& settings) {
                [&settings](std::string_view value) { settings.size = parse_size(value); }});
 }
 
+PictureNeeds with_margin(const PictureNeeds& needs) {
+  constexpr int margin = 4;
+  constexpr int enough_width = 640;
+  constexpr int enough_height = 480;
+  return {std::max(needs.width, std::min(margin * needs.width, enough_width)),
+          std::max(needs.height, std::min(margin * needs.height, enough_height)),
+          needs.gray_is_enough};
+}
+
 live::CameraOptions camera_options(const CameraSettings& settings, const std::string& path,
-                                   int least_width, int least_height, bool colour, double fps) {
+                                   const PictureNeeds& needs, double fps) {
+  constexpr double frames_to_wait = 3.0;
+  const PictureNeeds wanted = with_margin(needs);
   live::CameraOptions options;
   options.path = path;
-  options.wish = {.least_width = least_width,
-                  .least_height = least_height,
-                  .colour = colour,
+  options.timeout = std::max(
+      options.timeout,
+      std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(frames_to_wait / fps)));
+  options.wish = {.least_width = wanted.width,
+                  .least_height = wanted.height,
+                  .colour = !needs.gray_is_enough,
                   .rate = fps,
                   .format = settings.format,
                   .size = settings.size};

@@ -11,6 +11,12 @@
 #include "seqloop/pipeline.hpp"
 
 namespace seqloop::program {
+namespace {
+
+// Rows that stand for one gap: longer than any window, so that none reaches across it.
+constexpr std::uint64_t most_missing = 1'000;
+
+}  // namespace
 
 DescribedCount describe_drive(const std::string& name, FrameSource& source, Describer& describer,
                               files::NpyWriter& out, Progress& progress,
@@ -30,8 +36,11 @@ DescribedCount describe_drive(const std::string& name, FrameSource& source, Desc
       if (!was_silent) progress.tell(fmt::format("{}: {}", name, frame.fault));
       continue;
     }
-    const bool first = out.rows() == 0;  // a camera's first frames may be long gone
-    for (std::uint64_t gap = first ? 0 : frame.lost + frame.dropped; gap > 0 && !whole(); --gap) {
+    const std::uint64_t gap = frame.lost + frame.dropped;
+    if (was_silent || gap > most_missing) {
+      progress.tell(fmt::format("{}: frames come again, after {} that are missing", name, gap));
+    }
+    for (std::uint64_t row = 0; row < std::min(gap, most_missing) && !whole(); ++row) {
       out.append(nothing);
       ++count.missing;
     }

@@ -19,7 +19,7 @@ struct DescribeUntil {
 /// Frames that are not like the others.
 struct DescribedCount {
   std::size_t unreadable = 0;  ///< rows of zeros, which keep the rows in step with the frames
-  std::size_t missing = 0;     ///< likewise, of frames that were lost or dropped
+  std::size_t missing = 0;     ///< likewise, of frames lost or dropped, up to 1,000 a gap
   std::size_t blank = 0;       ///< without any feature
 };
 

@@ -16,18 +16,17 @@ double milliseconds(Nanoseconds duration) {
 /// JSON has no NaN and no infinity.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// Names of the limits that a frame broke.
-Json broken(const Misses& missed) {
-  Json names = Json::array();
-  if (missed.age) names.push_back("age");
-  if (missed.grab) names.push_back("grab");
-  if (missed.describe) names.push_back("describe");
-  if (missed.match) names.push_back("match");
-  if (missed.total) names.push_back("total");
+}  // namespace
+
+std::vector<std::string_view> names(const Misses& missed) {
+  std::vector<std::string_view> names;
+  if (missed.age) names.emplace_back("age");
+  if (missed.grab) names.emplace_back("grab");
+  if (missed.describe) names.emplace_back("describe");
+  if (missed.match) names.emplace_back("match");
+  if (missed.total) names.emplace_back("total");
   return names;
 }
-
-}  // namespace
 
 std::string frame_json(const ProcessedFrame& processed, const LoopState& state) {
   const FrameReport& report = processed.report;
@@ -52,7 +51,7 @@ std::string frame_json(const ProcessedFrame& processed, const LoopState& state) 
   json["full_search"] = report.full_search;
   json["map_full"] = report.map_full;
   json["deadline_missed"] = state.missed.any();
-  if (state.missed.any()) json["missed"] = broken(state.missed);
+  if (state.missed.any()) json["missed"] = names(state.missed);
   json["overloaded"] = state.overloaded;
   json["dropped"] = processed.frame.dropped;
   json["lost"] = processed.frame.lost;

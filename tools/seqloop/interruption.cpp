@@ -9,21 +9,26 @@ namespace {
 
 volatile sig_atomic_t asked = 0;
 
-void ask(int /*signal*/) { asked = 1; }
-
-}  // namespace
-
-void take_interruptions() noexcept {
+/// Gives the signals to a handler, but for those that are ignored.
+void handle_with(void (*handler)(int)) noexcept {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction before {};
-    sigaction(signal, nullptr, &before);
-    if (before.sa_handler == SIG_IGN) continue;  // nohup and the shell's & want it so
     struct sigaction action {};
-    action.sa_handler = ask;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(signal, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;  // nohup and the shell's & want it so
+    action = {};
+    action.sa_handler = handler;
     sigaction(signal, &action, nullptr);
   }
 }
+
+void ask(int /*signal*/) {
+  asked = 1;
+  handle_with(SIG_DFL);  // the next one ends the program, whichever it is
+}
+
+}  // namespace
+
+void take_interruptions() noexcept { handle_with(ask); }
 
 bool interrupted() noexcept { return asked != 0; }
 

@@ -22,16 +22,22 @@ LiveCamera open_camera(const std::filesystem::path& path, const CameraSettings& 
                        double fps, Describer& describer, const RealTimeSettings& real_time,
                        Clock& clock) {
   const PictureNeeds needs = describer.needs();
-  auto camera =
-      std::make_unique<live::Camera>(camera_options(settings, path.string(), needs.width,
-                                                    needs.height, !needs.gray_is_enough, fps),
-                                     live::system_calls(), clock);
+  const live::CameraOptions options = camera_options(settings, path.string(), needs, fps);
+  auto camera = std::make_unique<live::Camera>(options, live::system_calls(), clock);
   const live::CameraFacts facts = camera->facts();
   auto decoder = std::make_unique<CameraDecoder>(needs);
   warm_up(*decoder, describer, facts.mode.format, facts.mode.width, facts.mode.height);
+  live::LiveSettings source_settings = live_settings(real_time);
+  source_settings.hang_timeout += options.timeout;
+  source_settings.from_first_taken = true;
+  std::string mode = fmt::format("{}, {}", facts.identity.card, to_string(facts.mode));
+  const double rate = live::rate(facts.mode);
+  if (rate > 0.0 && rate < 0.98 * fps) {
+    mode += fmt::format(", which is less than the {:g} fps asked for", fps);
+  }
   return {std::make_unique<live::LiveSource>(std::move(camera), std::move(decoder), clock,
-                                             live_settings(real_time)),
-          fmt::format("{}, {}", facts.identity.card, to_string(facts.mode))};
+                                             std::move(source_settings)),
+          std::move(mode)};
 }
 
 live::LiveSettings live_settings(const RealTimeSettings& real_time) {

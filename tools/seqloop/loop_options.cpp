@@ -6,14 +6,15 @@
 namespace seqloop::program {
 namespace {
 
+constexpr double shortest_ms = 1e-6;  // a nanosecond
 constexpr double longest_ms = 1e9;
 
 Nanoseconds limit(double ms, const char* name, bool must_be, Faults& faults) {
-  const bool fits = ms <= longest_ms && (must_be ? ms > 0.0 : ms >= 0.0);
+  const bool fits = ms <= longest_ms && (ms >= shortest_ms || (ms == 0.0 && !must_be));
   if (!fits) {
-    faults.push_back(
-        {std::string("budget-") + name, must_be ? "it must be above 0 and at most 1e9 milliseconds"
-                                                : "it must be 0 (no limit) to 1e9 milliseconds"});
+    faults.push_back({std::string("budget-") + name,
+                      must_be ? "it must be 1e-6 to 1e9 milliseconds"
+                              : "it must be 0 (no limit), or 1e-6 to 1e9 milliseconds"});
     return {};
   }
   return std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double, std::milli>(ms));

@@ -145,8 +145,9 @@ int run_program(int argc, char** argv) {
 
 /// A file that is opened must not become standard error because that was closed.
 void keep_standard_streams() {
-  for (int descriptor = open("/dev/null", O_RDWR); descriptor >= 0;
-       descriptor = open("/dev/null", O_RDWR)) {
+  // For reading only: what is written to a standard output that was closed is an error, not lost.
+  for (int descriptor = open("/dev/null", O_RDONLY); descriptor >= 0;
+       descriptor = open("/dev/null", O_RDONLY)) {
     if (descriptor <= STDERR_FILENO) continue;
     close(descriptor);
     return;

@@ -55,13 +55,16 @@ void add_real_time_options(OptionTable& options, RealTimeSettings& settings) {
 
 void prepare(const RealTimeSettings& settings, Faults& faults) {
   Faults found = live::validate(settings.work_thread(), "loop");
-  if (found.empty()) {
-    std::thread([&] {
-      found = live::schedule(settings.work_thread(), "loop");
-      if (found.empty()) append(found, live::schedule(settings.capture_thread(), "capture thread"));
-    }).join();
-  }
+  // What is wrong by itself is told already; whether the system grants the rest is another
+  // question.
+  RealTimeSettings tried = settings;
+  if (!found.empty()) tried.cpus.clear();
   append(faults, std::move(found));
+  std::thread([&] {
+    Faults refused = live::schedule(tried.work_thread(), "loop");
+    if (refused.empty()) refused = live::schedule(tried.capture_thread(), "capture thread");
+    append(faults, std::move(refused));
+  }).join();
   if (!settings.lock_memory) return;
   append(faults, live::lock_memory());
   append(faults, live::keep_freed_memory());

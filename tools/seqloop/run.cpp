@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +20,7 @@
 #include "seqloop/run_setup.hpp"
 #include "seqloop/run_summary.hpp"
 #include "seqloop/say.hpp"
+#include "seqloop/source_numbers.hpp"
 #include "seqloop/trouble_log.hpp"
 #include "seqloop/verb.hpp"
 #include "seqloop/warm_up.hpp"
@@ -74,16 +76,28 @@ void run(const RunSettings& settings, Faults faults) {
   warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
   start_playing(setup, settings, clock);
   Pipeline pipeline(setup.source(), setup.describer.get(), detector, clock, setup.descriptor_size);
+  setup.out->heed(interrupted);
   const live::ThreadCounters warm = live::thread_counters();
 
+  const bool closing = settings.reference.empty();
+  SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  bool map_full = false;
   bool given_up = false;
+  std::exception_ptr unwritten;
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
-    const std::optional<ProcessedFrame> processed = pipeline.process();
+    std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
+    if (!settings.pictures.empty()) recorder.add(processed->report, detector.newest_query());
+    numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
-    setup.out->write(frame_json(*processed, state));
-    setup.out->flush();
+    try {
+      setup.out->write(frame_json(*processed, state));
+      setup.out->flush();
+    } catch (const files::IoError&) {
+      unwritten = std::current_exception();
+      break;
+    }
     trouble.tell(*processed, clock.now());
     if (processed->report.gate == Gate::no_frame) {
       given_up = settings.give_up_s > 0.0 &&
@@ -91,26 +105,34 @@ void run(const RunSettings& settings, Faults faults) {
       if (given_up) break;
       continue;
     }
+    if (processed->report.map_full && !std::exchange(map_full, true)) {
+      progress.tell(fmt::format("frame {}: the map is full: from here on frames become no places",
+                                processed->report.newest));
+    }
     if (setup.live && overload.observe(state.missed.any())) {
       setup.live->take_every(overload.take_every());
       trouble.tell(overload, setup.overload);
     }
-    if (!settings.pictures.empty()) recorder.add(processed->report, detector.newest_query());
     progress.step();
   }
   const ThreadCost cost = since(warm);
   progress.done();
-  if (setup.live) {
-    setup.live->stop();
-    summary.captured(setup.live->counts());
-  }
-  tell_notes(settings.source, setup.source());
+  tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
   const bool none_readable =
       summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
   if (none_readable && setup.recording) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
-  setup.out->commit();
+  // The answers first: a driver that hangs may keep the capture thread from ending.
+  if (!unwritten) {
+    setup.out->commit();
+  } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {
+    say("what was written before is in {}", kept.string());
+  }
+  if (setup.live) {
+    setup.live->stop();
+    summary.captured(setup.live->counts());
+  }
   if (setup.summary) {
     setup.summary->write(
         run_report(summary, {settings.source, settings.matcher.method, setup.config, setup.places,
@@ -118,8 +140,9 @@ void run(const RunSettings& settings, Faults faults) {
                              overload.episodes(), setup.capture, cost}));
     setup.summary->commit();
   }
-  if (!settings.pictures.empty()) write_pictures(settings, recorder, map);
+  if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
   say_raw("seqloop: " + summary.text());
+  if (unwritten) std::rethrow_exception(unwritten);
   if (given_up) {
     throw std::runtime_error(fmt::format("{}: no frame for {:g} seconds: given up",
                                          settings.source.string(), settings.give_up_s));

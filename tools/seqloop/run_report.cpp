@@ -66,6 +66,7 @@ std::string run_report(const RunSummary& summary, const RunConditions& condition
                         {"lost", counts->lost},         {"silences", counts->silences}};
   }
   json["misses"] = summary.misses();
+  for (const auto& [limit, frames] : summary.missed()) json["missed"][std::string(limit)] = frames;
   json["dropped"] = summary.dropped();
   json["lost"] = summary.lost();
   for (const StageRecord& stage : summary.stages()) {

@@ -52,7 +52,7 @@ void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettin
                       "record the drive and give the recording, or leave --pictures out"});
   }
   // Without a describer there is a fault already, and nothing to choose a mode for.
-  if (!setup.describer || !faults.empty()) return;
+  if (!setup.describer) return;
   collect(faults, [&] {
     LiveCamera camera = open_camera(settings.source, settings.camera, drive.fps, *setup.describer,
                                     settings.real_time, clock);
@@ -77,6 +77,11 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);
   prepare(settings.real_time, faults);
+  if (!(settings.give_up_s >= 0.0)) faults.push_back({"give-up-s", "it must be 0 (never) or more"});
+  if (settings.pace == Pace::live && !settings.pictures.empty() && !is_camera(settings.source)) {
+    faults.push_back({"pictures", "at live pace frames may be missing from them",
+                      "leave --pace live or --pictures out"});
+  }
   DriveSettings drive = settings.drive;
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);

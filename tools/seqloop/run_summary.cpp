@@ -11,6 +11,13 @@ double milliseconds(Nanoseconds duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
 }
 
+Nanoseconds limit_of(const Budget& budget, std::string_view name) {
+  if (name == "age") return budget.age;
+  if (name == "grab") return budget.grab;
+  if (name == "describe") return budget.describe;
+  return name == "match" ? budget.match : budget.total;
+}
+
 std::string stage_line(const StageRecord& stage) {
   return fmt::format(
       "  {:<10}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}\n", stage.name,
@@ -34,6 +41,7 @@ void RunSummary::add(const ProcessedFrame& processed, const LoopState& state) {
   lost_ += processed.frame.lost;
   if (processed.report.map_full) ++map_full_;
   if (state.missed.any()) ++misses_;
+  for (const std::string_view limit : names(state.missed)) ++missed_.at(limit);
   if (state.overloaded) ++overloaded_;
 }
 
@@ -44,10 +52,17 @@ std::string RunSummary::text() const {
     text += fmt::format(" {} {}{}", at_gate_[gate], name(static_cast<Gate>(gate)),
                         gate > first ? "," : "\n");
   }
-  text += fmt::format("  {:<10}{:>10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "p99.9", "max");
-  for (const StageRecord& stage : stages()) text += stage_line(stage);
-  text +=
-      fmt::format("  {} frames missed the budget of {:g} ms", misses_, milliseconds(budget_.total));
+  if (frames() > 0) {
+    text += fmt::format("  {:<10}{:>10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "p99.9", "max");
+    for (const StageRecord& stage : stages()) text += stage_line(stage);
+  }
+  text += fmt::format("  {} frames missed the budget", misses_);
+  for (const auto& [limit, frames] : missed_) {
+    if (frames > 0 || limit == "total") {
+      text += fmt::format(", {} that of {:g} ms for {}", frames,
+                          milliseconds(limit_of(budget_, limit)), limit);
+    }
+  }
   if (capture_) {
     text += fmt::format("\n  {} grabbed: {} taken, {} dropped; {} lost by the camera\n",
                         capture_->delivered, frames(), capture_->dropped, capture_->lost);

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "linux/live_source.hpp"
 #include "seqloop/frame_json.hpp"
@@ -27,7 +29,11 @@ class RunSummary {
   void add(const ProcessedFrame& processed, const LoopState& state);
 
   /// What became of a live source's frames.
-  void captured(const live::LiveCounts& counts) { capture_ = counts; }
+  void captured(const live::LiveCounts& counts) {
+    capture_ = counts;
+    dropped_ = counts.dropped;
+    lost_ = counts.lost;
+  }
   [[nodiscard]] const std::optional<live::LiveCounts>& capture() const noexcept { return capture_; }
 
   /// Frames that were taken up, those that could not be read included.
@@ -36,6 +42,10 @@ class RunSummary {
     return at_gate_[static_cast<std::size_t>(gate)];
   }
   [[nodiscard]] std::uint64_t misses() const noexcept { return misses_; }
+  /// Frames that broke each limit, by the names of `Misses`.
+  [[nodiscard]] const std::map<std::string_view, std::uint64_t>& missed() const noexcept {
+    return missed_;
+  }
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::uint64_t overloaded() const noexcept { return overloaded_; }
@@ -55,6 +65,8 @@ class RunSummary {
   bool live_;
   std::array<std::uint64_t, gates> at_gate_{};
   std::uint64_t misses_ = 0;
+  std::map<std::string_view, std::uint64_t> missed_{
+      {"age", 0}, {"describe", 0}, {"grab", 0}, {"match", 0}, {"total", 0}};
   std::uint64_t dropped_ = 0;
   std::uint64_t lost_ = 0;
   std::uint64_t overloaded_ = 0;

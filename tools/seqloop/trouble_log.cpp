@@ -26,7 +26,7 @@ void TroubleLog::tell(const ProcessedFrame& processed, Nanoseconds now) {
   if (!processed.frame.remark.empty()) {
     progress_->tell(fmt::format("frame {}: {}", processed.report.newest, processed.frame.remark));
   }
-  tell_error(processed);
+  if (!processed.fault.empty()) tell_error(processed, now);
 }
 
 void TroubleLog::tell_silence(const ProcessedFrame& processed, Nanoseconds now) {
@@ -36,17 +36,16 @@ void TroubleLog::tell_silence(const ProcessedFrame& processed, Nanoseconds now) 
   progress_->tell(processed.fault);
 }
 
-void TroubleLog::tell_error(const ProcessedFrame& processed) {
-  if (processed.fault.empty()) {
-    const std::uint64_t errors = std::exchange(errors_in_a_row_, 0);
-    if (live_ && errors > 1) {
-      progress_->tell(fmt::format("frame {}: readable again, after {} that were not",
-                                  processed.report.newest, errors));
-    }
+void TroubleLog::tell_error(const ProcessedFrame& processed, Nanoseconds now) {
+  if (live_ && error_told_ && now - *error_told_ < tell_again_after) {
+    ++errors_untold_;
     return;
   }
-  if (live_ && errors_in_a_row_++ > 0) return;
-  progress_->tell(fmt::format("frame {}: {}", processed.report.newest, processed.fault));
+  error_told_ = now;
+  const std::uint64_t untold = std::exchange(errors_untold_, 0);
+  progress_->tell(
+      fmt::format("frame {}: {}{}", processed.report.newest, processed.fault,
+                  untold > 0 ? fmt::format(" ({} more since the last word)", untold) : ""));
 }
 
 void TroubleLog::tell(const OverloadWatch& watch, const OverloadRule& rule) {

@@ -28,13 +28,14 @@ class TroubleLog {
 
  private:
   void tell_silence(const ProcessedFrame& processed, Nanoseconds now);
-  void tell_error(const ProcessedFrame& processed);
+  void tell_error(const ProcessedFrame& processed, Nanoseconds now);
 
   Progress* progress_;
   bool live_;
   std::optional<Nanoseconds> silent_since_;
   Nanoseconds told_{0};
-  std::uint64_t errors_in_a_row_ = 0;
+  std::optional<Nanoseconds> error_told_;
+  std::uint64_t errors_untold_ = 0;
 };
 
 }  // namespace seqloop::program

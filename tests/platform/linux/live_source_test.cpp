@@ -213,17 +213,21 @@ TEST(LiveSource, ADeviceThatHangsInTakingAFrameBackIsToldSo) {
   live.view.keeps = false;
 }
 
-TEST(LiveSource, TakesOnlyEveryNthIndexWhenAskedTo) {
+TEST(LiveSource, TakesOneOfEveryNIndicesWhenAskedTo) {
   Live live({Act::frame, Act::frame, Act::gap});
   live.source.take_every(3);
-  live.view.act(3);  // 0, 1, 4
+  live.view.act(2);  // 0, 1
   ASSERT_EQ(live.grab(), Grab::frame);
   EXPECT_EQ(live.frame.index, 0U);
+  live.view.act();  // 4: it stands for 3, which was lost
+  ASSERT_EQ(live.grab(), Grab::frame);
+  EXPECT_EQ(live.frame.index, 4U);
+  EXPECT_EQ(live.frame.dropped, 1U);
+  EXPECT_EQ(live.frame.lost, 2U);
   live.view.act(4);  // 5 to 8
   ASSERT_EQ(live.grab(), Grab::frame);
   EXPECT_EQ(live.frame.index, 6U);
-  EXPECT_EQ(live.frame.dropped, 3U);
-  EXPECT_EQ(live.frame.lost, 2U);
+  EXPECT_EQ(live.frame.dropped, 1U);
   live.source.take_every(1);
   live.view.act();
   ASSERT_EQ(live.grab(), Grab::frame);
@@ -232,9 +236,42 @@ TEST(LiveSource, TakesOnlyEveryNthIndexWhenAskedTo) {
   live.source.stop();
   const LiveCounts counts = live.source.counts();
   EXPECT_EQ(counts.delivered, 8U);
-  EXPECT_EQ(counts.taken, 3U);
-  EXPECT_EQ(counts.dropped, 5U);
+  EXPECT_EQ(counts.taken, 4U);
+  EXPECT_EQ(counts.dropped, 4U);
   EXPECT_EQ(counts.lost, 2U);
+}
+
+TEST(LiveSource, NoPatternOfLossesStarvesAThinnedOutReader) {
+  // Indices 0, 3, 6 ... and then only such as leave 2 when divided by 3.
+  std::vector<Act> acts{Act::frame, Act::frame, Act::frame};
+  for (int i = 0; i < 20; ++i) acts.push_back(Act::gap);
+  Live live(std::move(acts));
+  live.source.take_every(3);
+  for (int i = 0; i < 20; ++i) live.view.act();
+  ASSERT_EQ(live.grab(), Grab::frame);
+  EXPECT_GT(live.frame.index, 40U);
+}
+
+TEST(LiveSource, CountsFromTheFirstFrameThatIsTakenWhereAskedTo) {
+  LiveSettings settings = Live::patient();
+  settings.from_first_taken = true;
+  Live live({Act::gap, Act::frame, Act::frame, Act::gap}, settings);
+  live.view.act(3);  // 2, 3, 4
+  EXPECT_EQ(live.source.counts().delivered, 0U);
+  ASSERT_EQ(live.grab(), Grab::frame);
+  EXPECT_EQ(index_in(live.frame.image.data), 4U);
+  EXPECT_EQ(live.frame.index, 0U);
+  EXPECT_EQ(live.frame.time_s, 0.0);
+  EXPECT_EQ(live.frame.lost + live.frame.dropped, 0U);
+  live.view.act();  // 7
+  ASSERT_EQ(live.grab(), Grab::frame);
+  EXPECT_EQ(live.frame.index, 3U);
+  EXPECT_EQ(live.frame.lost, 2U);
+  live.source.stop();
+  EXPECT_EQ(live.source.counts().delivered, 2U);
+  EXPECT_EQ(live.source.counts().taken, 2U);
+  EXPECT_EQ(live.source.counts().dropped, 0U);
+  EXPECT_EQ(live.source.counts().lost, 2U);
 }
 
 TEST(LiveSource, StoppingGivesEverythingBackAndCountsWhatWaitsAsDropped) {

@@ -77,7 +77,7 @@ says_who_is_not_permitted() {
 
 says_that_the_camera_is_busy() {
   camera
-  v4l2-ctl --stream-mmap --stream-count=200 >/dev/null 2>&1 &
+  v4l2-ctl --stream-mmap --stream-count=0 >/dev/null 2>&1 &
   local other=$!
   sleep 1
   expect "it says why" refused 2 busy --source /dev/video0 $small
