@@ -107,11 +107,14 @@ TEST_F(Live, AtMaximalPaceNothingIsDroppedAndThereIsNoAge) {
 TEST_F(Live, AReaderThatStoppedReadingDoesNotKeepItFromStopping) {
   write_drive("q.npy", 3000);
   // 3,000 lines do not fit into a pipe; the program is stopped while it waits for the reader.
-  folder_.write("stop.sh",
-                "mkfifo pipe\nsleep 30 <pipe &\n"
-                "timeout --preserve-status -s TERM 2 '" SEQLOOP_BINARY
-                "' run --source q.npy --ds 5 --exclude 20 --summary s.json >pipe 2>err.txt\n"
-                "echo $? >code.txt\nkill %1\n");
+  folder_.write(
+      "stop.sh",
+      "mkfifo pipe\nsleep 60 <pipe &\n"
+      "'" SEQLOOP_BINARY
+      "' run --source q.npy --ds 5 --exclude 20 --summary s.json >pipe 2>err.txt &\n"
+      "program=$!\n"
+      "for i in $(seq 300); do ls .s.json.partial-* >/dev/null && break; sleep 0.1; done\n"
+      "sleep 3\nkill -TERM $program\nwait $program\necho $? >code.txt\nkill %1\n");
   static_cast<void>(
       std::system(("cd '" + folder_.path().string() + "' && bash stop.sh 2>/dev/null").c_str()));
   EXPECT_EQ(test::read_all(file("code.txt")), "1\n") << test::read_all(file("err.txt"));

@@ -4,7 +4,7 @@
 start() {
   camera "$@"
   live --source /dev/video0 --format YUYV --size 320x180 --fps 10
-  expect "frames at first" within 20 has 5 good_lines
+  expect "frames at first" within 40 has 5 good_lines
 }
 unplug() { echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind; }
 plug() { echo vivid.0 >/sys/bus/platform/drivers/vivid/bind; }
@@ -67,9 +67,23 @@ finds_the_camera_again() {
   start
   unplug
   expect "no_frame" within 15 has 1 count_of no_frame
-  sleep 2
+  sleep 3
   plug
   expect "good again" good_again
+  expect "what would have come counts as lost" below 15 "$(most lost)"
+}
+
+gives_up_when_told_to() {
+  camera
+  local out=$WORK/given-up.jsonl
+  live --source /dev/video0 --format YUYV --size 320x180 --fps 10 --give-up-s 3 --out "$out"
+  expect "the device is open" within 20 holds /dev/video0
+  sleep 3
+  unplug
+  expect "exit code 1" ends 1
+  expect "the answers are there" has 5 good_lines "$out"
+  expect "it says why" grep -q 'given up' "$log"
+  plug
 }
 
 # Meanwhile another camera took its name: the loopback device, which has no pictures.
@@ -118,7 +132,7 @@ ends_while_the_camera_is_lost() {
 
 for name in names_a_damaged_frame counts_frames_that_the_driver_drops tells_a_silent_camera \
   survives_a_fatal_streaming_error survives_a_refused_buffer survives_a_disconnect \
-  tries_again_when_it_cannot_start_at_once finds_the_camera_again \
+  tries_again_when_it_cannot_start_at_once finds_the_camera_again gives_up_when_told_to \
   finds_the_camera_under_another_name does_not_take_its_twin lets_go_of_a_lost_camera \
   ends_while_the_camera_is_lost; do
   run_case "$name"
