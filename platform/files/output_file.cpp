@@ -149,7 +149,7 @@ void OutputFile::flush() {
 std::filesystem::path OutputFile::keep_incomplete() noexcept {
   if (partial_.empty() || descriptor_ < 0) return {};
   try {
-    const std::filesystem::path kept = path_.string() + ".incomplete";
+    std::filesystem::path kept = path_.string() + ".incomplete";
     if (std::rename(partial_.c_str(), kept.c_str()) != 0) return {};
     partial_.clear();
     ::close(std::exchange(descriptor_, -1));

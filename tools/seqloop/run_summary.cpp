@@ -64,8 +64,8 @@ std::string RunSummary::text() const {
     }
   }
   if (capture_) {
-    text += fmt::format("\n  {} grabbed: {} taken, {} dropped; {} lost\n",
-                        capture_->delivered, frames(), capture_->dropped, capture_->lost);
+    text += fmt::format("\n  {} grabbed: {} taken, {} dropped; {} lost\n", capture_->delivered,
+                        frames(), capture_->dropped, capture_->lost);
   } else {
     text += ", 0 dropped\n";
   }

@@ -136,7 +136,8 @@ class LiveAllocation : public testing::TestWithParam<Candidates> {
 
 TEST_P(LiveAllocation, NoStageTakesMemoryOrFaultsAPageIn) {
   for (const Use use : {Use::localise, Use::close_loops}) {
-    // A machine that is short of memory takes pages away: of three goes, one without that is enough.
+    // A machine that is short of memory takes pages away: of three goes, one without that is
+    // enough.
     Found found = run(GetParam(), use, false);
     for (int go = 1; go < 3 && found.page_faults > 0; ++go) found = run(GetParam(), use, false);
     EXPECT_GE(found.stages, 3 * frames) << "grab, describe, match";

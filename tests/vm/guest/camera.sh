@@ -12,7 +12,7 @@ lists_the_camera() {
 captures_at_full_rate() {
   camera
   log=$WORK/capture.log
-  timeout 60 "$SEQLOOP" camera --device /dev/video0 --frames 100 --format YUYV --size 640x480 --fps 25 >"$log" 2>&1
+  timeout 60 "$SEQLOOP" camera --device /dev/video0 --frames 50 --format YUYV --size 640x480 --fps 25 >"$log" 2>&1
   expect "the capture ends well" [ $? = 0 ]
   cp "$log" "$OUT/capture.txt"
 }
@@ -106,9 +106,9 @@ ends_whole_at_sigint() { ends_whole INT; }
 counts_on_when_the_sequence_number_wraps() {
   camera
   control wrap_sequence_number=1
-  live --source /dev/video0 --format YUYV --size 320x180 --fps 25 --frames 150
+  live --source /dev/video0 --format YUYV --size 320x180 --fps 25 --frames 140
   expect "it ends" ends 0
-  expect "150 lines" is 150 all_lines
+  expect "140 lines" is 140 all_lines
   expect "the wrap loses nothing" below "$(most lost)" 20
 }
 
