@@ -259,9 +259,10 @@ void Camera::remark(std::string_view text) noexcept {
 void Camera::tell_silent(Captured& captured) noexcept {
   ++counters_.silences;
   const Nanoseconds silent = clock_.now() - last_frame_;
-  const Digits milliseconds(static_cast<std::uint64_t>(silent / Milliseconds(1)));
   captured.what = Capture::silent;
-  captured.fault.assign({"no frame from ", facts_.path, " for ", milliseconds.view(), " ms"});
+  captured.fault.assign({"no frame from ", facts_.path, " for "});
+  captured.fault.append_number(static_cast<std::uint64_t>(silent / Milliseconds(1)));
+  captured.fault.append(" ms");
   act_on_silence(captured.fault.view());
 }
 
@@ -279,9 +280,10 @@ void Camera::act_on_silence(std::string_view why) noexcept {
 
 void Camera::tell_lost(Captured& captured, Nanoseconds now) noexcept {
   if (std::exchange(loss_untold_, false)) ++counters_.losses;
-  const Digits milliseconds(static_cast<std::uint64_t>((now - lost_since_) / Milliseconds(1)));
   captured.what = Capture::lost;
-  captured.fault.assign({loss_.view(), "; looked for since ", milliseconds.view(), " ms"});
+  captured.fault.assign({loss_.view(), "; looked for since "});
+  captured.fault.append_number(static_cast<std::uint64_t>((now - lost_since_) / Milliseconds(1)));
+  captured.fault.append(" ms");
 }
 
 void Camera::give_back(const Captured& captured) noexcept {

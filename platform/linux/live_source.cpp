@@ -1,7 +1,6 @@
 #include "linux/live_source.hpp"
 
 #include <array>
-#include <charconv>
 #include <system_error>
 #include <utility>
 
@@ -202,13 +201,11 @@ Grab LiveSource::tell_hang(Frame& frame, Nanoseconds since) noexcept {
   // In the order of `Doing`.
   static constexpr std::array<std::string_view, 2> names = {"asking the device for a frame",
                                                             "giving a frame back to the device"};
-  std::array<char, 24> digits{};
-  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
-  const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), milliseconds).ptr;
   const auto doing = static_cast<std::size_t>(doing_.load(std::memory_order_relaxed));
-  hang_.assign({"the capture thread hangs: for ",
-                std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())),
-                " ms it has been ", names[doing]});
+  hang_.assign({"the capture thread hangs: for "});
+  hang_.append_number(static_cast<std::uint64_t>(since / std::chrono::milliseconds(1)));
+  hang_.append(" ms it has been ");
+  hang_.append(names[doing]);
   frame.fault = hang_.view();
   ++hangs_;
   return Grab::silent;
