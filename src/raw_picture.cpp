@@ -1,5 +1,7 @@
 #include "seqloop/raw_picture.hpp"
 
+#include <algorithm>
+
 namespace seqloop {
 
 std::string_view name(RawFormat format) noexcept {
@@ -22,6 +24,25 @@ std::string_view name(RawFormat format) noexcept {
       return "MJPG";
   }
   return "?";
+}
+
+std::size_t row_bytes(RawFormat format, int width) noexcept {
+  const auto pixels = static_cast<std::size_t>(std::max(width, 0));
+  switch (format) {
+    case RawFormat::gray8:
+    case RawFormat::nv12:
+    case RawFormat::yu12:
+      return pixels;
+    case RawFormat::yuyv:
+    case RawFormat::uyvy:
+      return pixels * 2;
+    case RawFormat::bgr8:
+    case RawFormat::rgb8:
+      return pixels * 3;
+    case RawFormat::mjpg:
+      break;
+  }
+  return 0;
 }
 
 std::size_t bytes_of(RawFormat format, std::size_t stride, int height) noexcept {

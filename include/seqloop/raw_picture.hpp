@@ -32,6 +32,9 @@ struct RawPicture {
 /// `GREY`, `BGR3`, `RGB3`, `YUYV`, `UYVY`, `NV12`, `YU12`, `MJPG`: the four characters of V4L2.
 [[nodiscard]] std::string_view name(RawFormat format) noexcept;
 
+/// Bytes of the pixels in one row of the first plane, without padding; 0 for `mjpg`.
+[[nodiscard]] std::size_t row_bytes(RawFormat format, int width) noexcept;
+
 /// Bytes that a whole picture has at least; 0 for `mjpg`, which has as many as it needs.
 [[nodiscard]] std::size_t bytes_of(RawFormat format, std::size_t stride, int height) noexcept;
 

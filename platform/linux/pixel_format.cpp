@@ -50,25 +50,6 @@ std::optional<RawFormat> format_named(std::string_view wanted) noexcept {
   return std::nullopt;
 }
 
-std::size_t row_bytes(RawFormat format, int width) noexcept {
-  const auto pixels = static_cast<std::size_t>(std::max(width, 0));
-  switch (format) {
-    case RawFormat::gray8:
-    case RawFormat::nv12:
-    case RawFormat::yu12:
-      return pixels;
-    case RawFormat::yuyv:
-    case RawFormat::uyvy:
-      return pixels * 2;
-    case RawFormat::bgr8:
-    case RawFormat::rgb8:
-      return pixels * 3;
-    case RawFormat::mjpg:
-      break;
-  }
-  return 0;
-}
-
 std::size_t least_bytes(RawFormat format, std::size_t stride, int width, int height) noexcept {
   if (format == RawFormat::mjpg) return 1;
   const std::size_t padding = stride - std::min(stride, row_bytes(format, width));

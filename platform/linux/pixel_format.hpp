@@ -18,9 +18,6 @@ namespace seqloop::live {
 /// The format with this name, `YUYV`, small or capital letters.
 [[nodiscard]] std::optional<RawFormat> format_named(std::string_view name) noexcept;
 
-/// Bytes of a row of the first plane without padding; 0 for `mjpg`.
-[[nodiscard]] std::size_t row_bytes(RawFormat format, int width) noexcept;
-
 /// Bytes from which a whole picture can be taken: all but what pads the last row.
 [[nodiscard]] std::size_t least_bytes(RawFormat format, std::size_t stride, int width,
                                       int height) noexcept;

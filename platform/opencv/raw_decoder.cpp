@@ -11,21 +11,8 @@
 namespace seqloop::opencv {
 namespace {
 
-std::size_t bytes_a_pixel(RawFormat format) {
-  switch (format) {
-    case RawFormat::bgr8:
-    case RawFormat::rgb8:
-      return 3;
-    case RawFormat::yuyv:
-    case RawFormat::uyvy:
-      return 2;
-    default:
-      return 1;
-  }
-}
-
 bool has_whole_rows(const RawPicture& raw) {
-  return raw.stride / bytes_a_pixel(raw.format) >= static_cast<std::size_t>(raw.width);
+  return raw.stride >= row_bytes(raw.format, raw.width);
 }
 
 /// The first test keeps the second from overflowing.

@@ -26,28 +26,11 @@ void describe_noise(Describer& describer, std::mt19937& random) {
   }
 }
 
-/// Bytes from one row of the first plane to the next, without padding; 0 for `mjpg`.
-std::size_t stride_of(RawFormat format, int width) {
-  const auto pixels = static_cast<std::size_t>(width);
-  switch (format) {
-    case RawFormat::mjpg:
-      return 0;
-    case RawFormat::bgr8:
-    case RawFormat::rgb8:
-      return 3 * pixels;
-    case RawFormat::yuyv:
-    case RawFormat::uyvy:
-      return 2 * pixels;
-    default:
-      return pixels;
-  }
-}
-
 /// A grey picture as a camera sends it.
 std::vector<std::uint8_t> sent_as(RawFormat format, int width, int height) {
   constexpr std::uint8_t middle_gray = 128;  // of luma and of both chroma planes
   if (format != RawFormat::mjpg) {
-    return std::vector<std::uint8_t>(bytes_of(format, stride_of(format, width), height),
+    return std::vector<std::uint8_t>(bytes_of(format, row_bytes(format, width), height),
                                      middle_gray);
   }
   std::vector<std::uint8_t> bytes;
@@ -92,7 +75,7 @@ void warm_up(Describer* describer, const MatcherConfig& config, std::size_t desc
 void warm_up(PictureDecoder& decoder, Describer& describer, RawFormat format, int width,
              int height) {
   const std::vector<std::uint8_t> bytes = sent_as(format, width, height);
-  const RawPicture raw{bytes, width, height, stride_of(format, width), format};
+  const RawPicture raw{bytes, width, height, row_bytes(format, width), format};
   std::vector<float> descriptor(describer.size());
   for (int round = 0; round < rounds; ++round) {
     Image picture;
