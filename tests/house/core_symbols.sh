@@ -11,4 +11,14 @@ if foreign "$1" "$2"; then
   echo "$2 needs these from outside"
   exit 1
 fi
+# What is compiled for one kind of processor must not offer functions that the linker could take for
+# all, such as the C++ library's inline ones.
+shared() {
+  "$1" --print-file-name --defined-only --demangle "$2" |
+    grep -E ':(sse4|avx[^:]*|neon[^:]*)\.cpp\.o:.* [WVu] ' | grep -v 'hwy::N_'
+}
+if shared "$1" "$2"; then
+  echo "$2 may run these on processors that they were not compiled for"
+  exit 1
+fi
 echo "the core needs neither OpenCV nor threads nor files"

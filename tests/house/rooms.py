@@ -13,6 +13,9 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
            "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
 
 
+# Which instructions the processor has, and their names: for kernels alone.
+INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}
+
 # Libraries that belong to one outside world.
 LIBRARIES = {"opencv2": "opencv", "turbojpeg.h": "turbojpeg"}
 
@@ -24,7 +27,11 @@ def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
     if room in ("include", "src"):
         if library_header:
             return not quoted and include not in OUTSIDE
-        return world == "seqloop" and quoted or room == "src" and world == "Eigen"
+        if room == "src" and (world == "kernels" and quoted or world == "Eigen"):
+            return True
+        if file.parts[1] == "kernels" and (world == "hwy" or include in INSTRUCTIONS):
+            return not quoted
+        return world == "seqloop" and quoted
     if room == "platform":
         ours = world in ("seqloop", "opencv", "files", "linux", "turbojpeg", "evaluation", "street")
         if quoted or ours:
@@ -50,6 +57,10 @@ def prove_that_it_can_fail() -> None:
            "include/seqloop/b.hpp": "#include <Eigen/Core>",
            "src/c.cpp": "#include <thread>",
            "src/d.cpp": "  #  include <unistd.h>",
+           "src/n.cpp": "#include <immintrin.h>",
+           "src/kernels/o.cpp": "#include <sys/mman.h>",
+           "src/p.cpp": "#include <hwy/highway.h>",
+           "include/seqloop/q.hpp": '#include "kernels/blocks.hpp"',
            "src/e.cpp": '#include "opencv/dnn_describer.hpp"',
            "platform/opencv/f.cpp": '#include "files/npy_file.hpp"',
            "platform/opencv/k.cpp": "#include <files/npy_file.hpp>",
@@ -57,6 +68,8 @@ def prove_that_it_can_fail() -> None:
            "platform/opencv/m.cpp": "#include <turbojpeg.h>",
            "platform/files/g.hpp": '#include "evaluation/csv.hpp"'}
     good = {"src/h.cpp": '#include <Eigen/Core>\n#include <vector>\n#include "seqloop/frame.hpp"',
+            "src/kernels/r.cpp": '#include <immintrin.h>\n#include <hwy/highway.h>\n'
+                                 '#include "kernels/blocks.hpp"',
             "platform/opencv/i.cpp": '#include <opencv2/core.hpp>\n#include "opencv/detail/j.hpp"'}
     with tempfile.TemporaryDirectory() as folder:
         for name, text in {**bad, **good}.items():

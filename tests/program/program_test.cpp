@@ -57,6 +57,26 @@ class Run : public test::Program {
   }
 };
 
+TEST_F(Run, BenchTimesColumnsOfEverySizeAskedFor) {
+  const auto rows = nlohmann::json::parse(
+      expect_done("bench --only column --n 5,16 --d 20 --rounds 3 --json").out);
+  for (const int places : {5, 16}) {
+    for (const std::string by :
+         {"read-bandwidth", "seqloop-int8-scalar", "seqloop-sketch-scalar", "seqloop-float"}) {
+      EXPECT_EQ(std::ranges::count_if(rows,
+                                      [&](const nlohmann::json& row) {
+                                        return row["what"] == "column" && row["by"] == by &&
+                                               row["n"] == places && row["d"] == 20;
+                                      }),
+                1)
+          << by << ' ' << places;
+    }
+  }
+  EXPECT_EQ(run("bench --only column --n 5,,6").exit_code, 2);
+  EXPECT_EQ(run("bench --only column --n 0").exit_code, 2);
+  EXPECT_EQ(run("bench --only lunch").exit_code, 2);
+}
+
 TEST_F(Run, MatchFollowsThePaperToTheLetter) {
   std::uint32_t seed = 5;
   for (const bool closing : {false, true}) {

@@ -10,7 +10,10 @@
 
 #include "opencv/builtin_describer.hpp"
 #include "opencv/threads.hpp"
+#include "seqloop/bench.hpp"
 #include "seqloop/build_info.hpp"
+#include "seqloop/column_bench.hpp"
+#include "seqloop/contender.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/drives.hpp"
@@ -24,35 +27,12 @@ namespace {
 struct BenchSettings {
   bool json = false;
   std::string only;
-  std::size_t places = 3476;
+  std::vector<std::size_t> places{3476};
   std::size_t descriptor_size = 735;
   std::size_t ds = 100;
   std::size_t rounds = 200;
   DriveSettings drive;
 };
-
-/// Something that is timed.
-struct Contender {
-  std::string what;
-  std::string by;
-  std::size_t descriptor_size;
-  std::size_t bytes;  ///< that one round reads at least
-  std::function<void()> round;
-  LatencyHistogram times{};
-};
-
-/// Takes turns, so that a machine that slows down slows all contenders down.
-void time_in_turn(std::vector<Contender>& contenders, std::size_t rounds) {
-  constexpr std::size_t warm_up = 10;
-  for (std::size_t round = 0; round < warm_up + rounds; ++round) {
-    for (Contender& contender : contenders) {
-      const auto begin = std::chrono::steady_clock::now();
-      contender.round();
-      const Nanoseconds taken = std::chrono::steady_clock::now() - begin;
-      if (round >= warm_up) contender.times.add(taken);
-    }
-  }
-}
 
 /// A picture with edges in all directions. What is in it does not change what it costs.
 std::vector<std::uint8_t> made_picture(int width, int height) {
@@ -66,14 +46,6 @@ std::vector<std::uint8_t> made_picture(int width, int height) {
     }
   }
   return pixels;
-}
-
-std::vector<float> random_unit(std::mt19937& random, std::size_t size) {
-  std::normal_distribution<float> normal;
-  std::vector<float> vector(size);
-  for (float& value : vector) value = normal(random);
-  normalise(vector);
-  return vector;
 }
 
 /// Of what is asked for beside the built-in descriptor; empty when nothing is.
@@ -104,7 +76,7 @@ void time_describing(const BenchSettings& settings, std::vector<Contender>& all)
   outputs.reserve(describers.size());
   for (const auto& [name, describer] : describers) {
     std::vector<float>& output = outputs.emplace_back(describer->size());
-    contenders.push_back({"describe", name, describer->size(), pixels.size(),
+    contenders.push_back({"describe", name, 0, describer->size(), pixels.size(),
                           [&image, &output, worker = describer.get()] {
                             if (worker->describe(image, output) == Description::failed) {
                               throw std::runtime_error("describe: " +
@@ -112,17 +84,16 @@ void time_describing(const BenchSettings& settings, std::vector<Contender>& all)
                             }
                           }});
   }
-  time_in_turn(contenders, settings.rounds);
-  for (Contender& contender : contenders) all.push_back(std::move(contender));
+  time_in_turn(std::move(contenders), settings.rounds, all);
 }
 
 /// A whole step of exhaustive search: one column of differences, every line through every row.
-void time_steps(const BenchSettings& settings, std::vector<Contender>& all) {
+void time_steps(const BenchSettings& settings, std::size_t places, std::vector<Contender>& all) {
   MatcherConfig config;
   config.candidates = Candidates::all;
   config.sequence_length = settings.ds;
   config.standardisation.on = false;
-  const Capacity capacity{settings.places, settings.descriptor_size};
+  const Capacity capacity{places, settings.descriptor_size};
   Faults faults = validate(config);
   for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
   refuse(std::move(faults));
@@ -135,35 +106,56 @@ void time_steps(const BenchSettings& settings, std::vector<Contender>& all) {
   const std::vector<float> query = random_unit(random, capacity.descriptor_size);
   for (std::size_t frame = 0; frame <= settings.ds; ++frame) (void)detector.step(query);
   std::vector<Contender> contenders;
-  contenders.push_back({"step", "seqloop-float", capacity.descriptor_size,
+  contenders.push_back({"step", "seqloop-float", places, capacity.descriptor_size,
                         capacity.places * padded_size(capacity.descriptor_size) * sizeof(float),
                         [&] { (void)detector.step(query); }});
-  time_in_turn(contenders, settings.rounds);
-  for (Contender& contender : contenders) all.push_back(std::move(contender));
+  time_in_turn(std::move(contenders), settings.rounds, all);
+}
+
+std::vector<std::size_t> parse_counts(std::string_view text) {
+  std::vector<std::size_t> counts;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    counts.push_back(parse_count(text.substr(0, comma)));
+    if (comma == std::string_view::npos) return counts;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 double microseconds(Nanoseconds duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-void bench(const BenchSettings& settings, Faults faults) {
-  if (!settings.only.empty() && settings.only != "describe" && settings.only != "step") {
-    faults.push_back({"only", "'" + settings.only + "' is not timed", "describe or step"});
+void bench(const BenchSettings& settings, const RivalColumns& rivals, Faults faults) {
+  const std::string& only = settings.only;
+  if (!only.empty() && only != "describe" && only != "step" && only != "column") {
+    faults.push_back({"only", "'" + only + "' is not timed", "describe, step or column"});
   }
   if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
+  for (const std::size_t places : settings.places) {
+    if (only == "describe") break;
+    for (Fault& fault : validate(Capacity{places, settings.descriptor_size})) {
+      faults.push_back(std::move(fault));
+    }
+  }
   refuse(std::move(faults));
   opencv::use_threads(1);
   say("{}", condition_line());
   std::vector<Contender> all;
-  if (settings.only != "step") time_describing(settings, all);
-  if (settings.only != "describe") time_steps(settings, all);
+  if (only.empty() || only == "describe") time_describing(settings, all);
+  for (const std::size_t places : settings.places) {
+    if (only == "column") {
+      time_columns({places, settings.descriptor_size}, rivals, settings.rounds, all);
+    }
+    if (only.empty() || only == "step") time_steps(settings, places, all);
+  }
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const Contender& row : all) {
     const LatencyHistogram& times = row.times;
     rows.push_back({{"what", row.what},
                     {"by", row.by},
-                    {"n", settings.places},
+                    {"n", row.places},
                     {"d", row.descriptor_size},
                     {"ds", settings.ds},
                     {"p50_us", microseconds(times.quantile(0.5))},
@@ -172,8 +164,8 @@ void bench(const BenchSettings& settings, Faults faults) {
                     {"max_us", microseconds(times.maximum())},
                     {"bytes", row.bytes}});
     if (settings.json) continue;
-    fmt::print("{:<10}{:<40}{:>8} values{:>10.1f} us p50{:>10.1f} us p99\n", row.what, row.by,
-               row.descriptor_size, microseconds(times.quantile(0.5)),
+    fmt::print("{:<10}{:<40}{:>8} places{:>8} values{:>10.1f} us p50{:>10.1f} us p99\n", row.what,
+               row.by, row.places, row.descriptor_size, microseconds(times.quantile(0.5)),
                microseconds(times.quantile(0.99)));
   }
   if (settings.json) fmt::print("{}\n", rows.dump(1));
@@ -181,16 +173,23 @@ void bench(const BenchSettings& settings, Faults faults) {
 
 }  // namespace
 
-Verb bench_verb() {
+Verb bench_verb() { return bench_verb({}); }
+
+Verb bench_verb(RivalColumns rivals) {
   const auto settings = std::make_shared<BenchSettings>();
-  Verb verb{"bench",
-            "Time describing (beside --descriptor or --model) and a step here, on one thread",
-            {},
-            [settings](Faults faults) { bench(*settings, std::move(faults)); }};
+  Verb verb{
+      "bench",
+      "Time describing (beside --descriptor or --model), a step or columns here, on one thread",
+      {},
+      [settings, rivals = std::move(rivals)](Faults faults) {
+        bench(*settings, rivals, std::move(faults));
+      }};
   verb.options.flag("json", settings->json, "print JSON");
-  verb.options.text("only", settings->only, "describe or step [both]");
-  verb.options.count("n", settings->places, "places of the map [3476]");
-  verb.options.count("d", settings->descriptor_size, "values in a descriptor, for step [735]");
+  verb.options.text("only", settings->only, "describe, step or column [describe and step]");
+  verb.options.add({"n", ValueKind::text, "places of the map, several with commas between [3476]",
+                    [settings](std::string_view text) { settings->places = parse_counts(text); }});
+  verb.options.count("d", settings->descriptor_size,
+                     "values in a descriptor, for step and column [735]");
   verb.options.count("ds", settings->ds, "sequence length [100]");
   verb.options.count("rounds", settings->rounds, "times that each is timed [200]");
   add_drive_options(verb.options, settings->drive);

@@ -106,8 +106,7 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
 }
 
 int run_program(int argc, char** argv) {
-  const std::vector<Verb> verbs{run_verb(),  describe_verb(), match_verb(),  eval_verb(),
-                                plan_verb(), bench_verb(),    stills_verb(), camera_verb()};
+  const std::vector<Verb> verbs = all_verbs();
   std::vector<std::string> all_names;
   std::vector<Given> given(verbs.size());
   CLI::App app("Visual loop closure in fixed memory and bounded time", "seqloop");

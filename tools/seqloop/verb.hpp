@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "seqloop/fault.hpp"
 #include "seqloop/options.hpp"
@@ -26,6 +27,9 @@ struct Verb {
 [[nodiscard]] Verb bench_verb();
 [[nodiscard]] Verb stills_verb();
 [[nodiscard]] Verb camera_verb();
+
+/// All that the program offers.
+[[nodiscard]] std::vector<Verb> all_verbs();
 
 /// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
 template <class Part>

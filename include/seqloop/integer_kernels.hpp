@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace seqloop {
+
+/// Bytes that a stored row of small values is a whole number of: a cache line. The rest is zero.
+inline constexpr std::size_t row_bytes = 64;
+
+/// Bytes that one stored row takes: D rounded up to whole cache lines.
+[[nodiscard]] constexpr std::size_t padded_bytes(std::size_t descriptor_size) noexcept {
+  return (descriptor_size + row_bytes - 1) / row_bytes * row_bytes;
+}
+
+/// Values of a vector up to which no dot product of values -127 .. 127 leaves 32 bits:
+/// 127 * 127 * 2^17 < 2^31.
+inline constexpr std::size_t most_small_values = std::size_t{1} << 17U;
+
+/// Sums over int8 vectors and over bits, made for one kind of processor. Integers have no rounding:
+/// every variant gives the same numbers to the last bit. Memory may lie anywhere; nothing outside
+/// what is named is read. Alike in all: no allocation.
+///
+/// Plain pointers, because a variant's file is compiled for its processor: an inline function of
+/// the C++ library compiled there could be linked in for all.
+struct IntegerKernels {
+  std::string_view name;  ///< such as "avx2": for people, and to ask for one
+
+  /// Whether the processor that runs this has the instructions. Work: a few instructions.
+  bool (*supported)() noexcept;
+
+  /// @param a, b [size] -127 .. 127   @param size up to most_small_values
+  /// @return sum of a[i] * b[i]. Work: size MACs.
+  std::int32_t (*dot)(const std::int8_t* a, const std::int8_t* b, std::size_t size) noexcept;
+
+  /// The dots of one vector with consecutive rows.
+  /// @param query  [stride] -127 .. 127, zero beyond D
+  /// @param rows   [count, stride] the same
+  /// @param stride bytes from row to row, a whole number of row_bytes, up to most_small_values
+  /// @param dots   [count] written
+  /// Work: count * stride MACs; reads the rows once, front to back.
+  void (*dot_column)(const std::int8_t* query, const std::int8_t* rows, std::size_t stride,
+                     std::size_t count, std::int32_t* dots) noexcept;
+
+  /// @param a, b [words]
+  /// @return bits that differ. Work: words.
+  std::uint32_t (*hamming)(const std::uint64_t* a, const std::uint64_t* b,
+                           std::size_t words) noexcept;
+
+  /// The Hamming distances of one sketch to consecutive ones.
+  /// @param query [words]   @param rows [count, words]   @param bits [count] written
+  /// Work: count * words; reads the rows once, front to back.
+  void (*hamming_column)(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
+                         std::size_t count, std::uint32_t* bits) noexcept;
+};
+
+/// All variants that this library was built with, the best first, the one in plain C++ last. Not
+/// all need be supported here.
+[[nodiscard]] std::span<const IntegerKernels* const> integer_kernels() noexcept;
+
+/// The first supported one. Ask once and keep the answer.
+[[nodiscard]] const IntegerKernels& best_integer_kernels() noexcept;
+
+}  // namespace seqloop

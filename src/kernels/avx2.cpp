@@ -1,0 +1,20 @@
+#include "kernels/blocks.hpp"
+#include "kernels/highway.hpp"
+#include "kernels/variants.hpp"
+
+namespace seqloop::kernels {
+
+std::uint32_t hamming_avx2(const std::uint64_t* a, const std::uint64_t* b,
+                           std::size_t words) noexcept {
+  return hamming<HighwayDifferences>(a, b, words);
+}
+
+void hamming_column_avx2(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
+                         std::size_t count, std::uint32_t* out) noexcept {
+  hamming_column<HighwayDifferences>(query, rows, words, count, out);
+}
+
+constinit const IntegerKernels avx2 =
+    made_of<HighwayProducts, HighwayDifferences>("avx2", &has_avx2);
+
+}  // namespace seqloop::kernels

@@ -1,0 +1,12 @@
+#include <array>
+
+#include "kernels/variants.hpp"
+
+namespace seqloop {
+
+std::span<const IntegerKernels* const> integer_kernels() noexcept {
+  static constexpr std::array variants{&kernels::scalar};
+  return variants;
+}
+
+}  // namespace seqloop

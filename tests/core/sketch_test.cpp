@@ -1,0 +1,98 @@
+#include "seqloop/sketch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "guarded_bytes.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/integer_kernels.hpp"
+#include "seqloop/quantised.hpp"
+
+namespace seqloop {
+namespace {
+
+using Bytes = std::vector<std::int8_t>;
+using Words = std::vector<std::uint64_t>;
+
+Words sketched(std::span<const std::int8_t> descriptor, std::size_t words = sketch_words) {
+  Words out(words, ~std::uint64_t{0});
+  sketch(descriptor, out);
+  return out;
+}
+
+std::uint32_t bits_apart(const Words& a, const Words& b) {
+  return best_integer_kernels().hamming(a.data(), b.data(), a.size());
+}
+
+Bytes quantised(const std::vector<float>& descriptor) {
+  Bytes bytes(descriptor.size());
+  quantise(descriptor, bytes);
+  return bytes;
+}
+
+TEST(Sketch, DiffersByTheAngle) {
+  std::mt19937 random(31);
+  std::normal_distribution<float> normal;
+  for (const std::size_t size : {735U, 9216U}) {
+    std::vector<float> one(size);
+    std::vector<float> other(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      one[i] = normal(random);
+      other[i] = normal(random);
+    }
+    for (int step = 0; step <= 8; ++step) {
+      const double angle = std::numbers::pi * step / 8.0;
+      std::vector<float> turned(size);
+      for (std::size_t i = 0; i < size; ++i) {
+        turned[i] = static_cast<float>(std::cos(angle)) * one[i] +
+                    static_cast<float>(std::sin(angle)) * other[i];
+      }
+      const double bits = bits_apart(sketched(quantised(one)), sketched(quantised(turned)));
+      // The deviation of 2,048 independent bits is at most 23.
+      EXPECT_NEAR(bits, 2048.0 * step / 8.0, 120.0) << size << ' ' << step;
+    }
+  }
+}
+
+TEST(Sketch, OfAZeroVectorIsZero) { EXPECT_EQ(sketched(Bytes(100, 0)), Words(sketch_words, 0)); }
+
+TEST(Sketch, OfAShortDescriptorReadsNothingElse) {
+  for (const std::size_t size : {1U, 2U, 63U, 735U}) {
+    test::GuardedBytes memory(size);
+    const std::vector<std::uint8_t> values(size, 3);
+    const std::span<const std::uint8_t> held = memory.hold(values);
+    const Words bits = sketched({reinterpret_cast<const std::int8_t*>(held.data()), size});
+    EXPECT_EQ(bits, sketched(Bytes(size, 3)));
+  }
+}
+
+TEST(Sketch, BeginsWithTheShorterOne) {
+  std::mt19937 random(32);
+  Bytes descriptor(500);
+  for (std::int8_t& value : descriptor) value = static_cast<std::int8_t>(random() % 255U - 127U);
+  const Words shorter = sketched(descriptor, 3);
+  const Words longer = sketched(descriptor, 40);
+  EXPECT_TRUE(std::ranges::equal(shorter, std::span(longer).first(3)));
+  EXPECT_TRUE(sketched(descriptor, 0).empty());
+}
+
+TEST(Sketch, IsTheSameOnEveryProcessor) {
+  Bytes descriptor(735);
+  std::uint32_t state = 1;
+  for (std::int8_t& value : descriptor) {
+    state = state * 1664525U + 1013904223U;
+    value = static_cast<std::int8_t>(static_cast<std::int32_t>(state >> 24U) - 128);
+  }
+  std::uint64_t hash = 14695981039346656037U;
+  for (const std::uint64_t word : sketched(descriptor)) {
+    hash = (hash ^ word) * 1099511628211U;
+  }
+  EXPECT_EQ(hash, 17597874946097529743U);
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,8 @@
+#include "rivals/columns.hpp"
+#include "seqloop/bench.hpp"
+
+namespace seqloop::program {
+
+std::vector<Verb> all_verbs() { return {bench_verb(rivals::columns)}; }
+
+}  // namespace seqloop::program

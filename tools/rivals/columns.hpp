@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "seqloop/column_bench.hpp"
+
+namespace seqloop::rivals {
+
+/// The same column by Eigen, OpenBLAS and FAISS, each on one thread: products of the query with
+/// every place by the first two, the nearest place by the third.
+[[nodiscard]] std::vector<program::Contender> columns(const program::ColumnData& data);
+
+}  // namespace seqloop::rivals

@@ -1,0 +1,143 @@
+#include "seqloop/column_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "seqloop/arena.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/fixed_distance.hpp"
+#include "seqloop/integer_kernels.hpp"
+#include "seqloop/quantised.hpp"
+#include "seqloop/sketch.hpp"
+
+namespace seqloop::program {
+namespace {
+
+/// The same made places in every form that is timed, and room for what comes out.
+struct Places {
+  explicit Places(const Capacity& capacity)
+      : size(capacity),
+        stride(padded_bytes(size.descriptor_size)),
+        query(padded_size(size.descriptor_size)),
+        small_query(stride),
+        inverse_rows(size.places),
+        query_sketch(sketch_words),
+        dots(size.places),
+        distances(size.places),
+        bits(size.places),
+        floats(size.places),
+        memory(size.places * (query.size() * sizeof(float) + stride + sketch_words * 8) +
+                   3 * Arena::alignment,
+               {}) {
+    Arena arena(memory.span());
+    rows = arena.take<float>("rows", size.places * query.size());
+    small_rows = arena.take<std::int8_t>("small rows", size.places * stride);
+    sketches = arena.take<std::uint64_t>("sketches", size.places * sketch_words);
+    std::mt19937 random(1);
+    for (std::size_t row = 0; row < size.places; ++row) {
+      const std::vector<float> place = random_unit(random, size.descriptor_size);
+      std::ranges::copy(place, rows.subspan(row * query.size()).begin());
+      const std::span<std::int8_t> small = small_rows.subspan(row * stride, stride);
+      inverse_rows[row] = inverse_length(quantise(place, small).squared_norm);
+      sketch(small.first(size.descriptor_size), sketches.subspan(row * sketch_words, sketch_words));
+    }
+    const std::vector<float> unit = random_unit(random, size.descriptor_size);
+    std::ranges::copy(unit, query.begin());
+    inverse_query = inverse_length(quantise(unit, small_query).squared_norm);
+    sketch(std::span(small_query).first(size.descriptor_size), query_sketch);
+  }
+
+  Capacity size;
+  std::size_t stride;
+  std::vector<float> query;
+  std::vector<std::int8_t> small_query;
+  double inverse_query = 0.0;
+  std::vector<double> inverse_rows;
+  std::vector<std::uint64_t> query_sketch;
+  std::vector<std::int32_t> dots;
+  std::vector<std::uint16_t> distances;
+  std::vector<std::uint32_t> bits;
+  std::vector<float> floats;
+  ArenaMemory memory;
+  std::span<float> rows;
+  std::span<std::int8_t> small_rows;
+  std::span<std::uint64_t> sketches;
+};
+
+/// Reads memory and does next to nothing with it.
+std::uint64_t read_all(std::span<const std::int8_t> memory) {
+  std::array<std::uint64_t, 8> sums{};
+  const auto* words = reinterpret_cast<const std::uint64_t*>(memory.data());
+  for (std::size_t i = 0; i + sums.size() <= memory.size() / sizeof(std::uint64_t);
+       i += sums.size()) {
+    for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += words[i + j];
+  }
+  std::uint64_t total = 0;
+  for (const std::uint64_t sum : sums) total += sum;
+  return total;
+}
+
+std::vector<Contender> our_columns(Places& places) {
+  std::vector<Contender> contenders;
+  const auto add = [&](std::string by, std::size_t bytes, std::function<void()> round) {
+    contenders.push_back({"column", std::move(by), places.size.places, places.size.descriptor_size,
+                          bytes, std::move(round)});
+  };
+  add("read-bandwidth", places.small_rows.size_bytes(),
+      [&places, sum = std::uint64_t{0}]() mutable {
+        sum += read_all(places.small_rows);
+        places.dots.front() = static_cast<std::int32_t>(sum & 1U);
+      });
+  for (const IntegerKernels* kernels : integer_kernels()) {
+    if (!kernels->supported()) continue;
+    add(fmt::format("seqloop-int8-{}", kernels->name), places.small_rows.size_bytes(),
+        [&places, kernels] {
+          kernels->dot_column(places.small_query.data(), places.small_rows.data(), places.stride,
+                              places.size.places, places.dots.data());
+          fixed_distances(places.dots, places.inverse_query, places.inverse_rows, places.distances);
+        });
+  }
+  for (const IntegerKernels* kernels : integer_kernels()) {
+    if (!kernels->supported()) continue;
+    add(fmt::format("seqloop-sketch-{}", kernels->name), places.sketches.size_bytes(),
+        [&places, kernels] {
+          kernels->hamming_column(places.query_sketch.data(), places.sketches.data(), sketch_words,
+                                  places.size.places, places.bits.data());
+        });
+  }
+  add("seqloop-float", places.rows.size_bytes(), [&places] {
+    const std::size_t stride = places.query.size();
+    for (std::size_t row = 0; row < places.size.places; ++row) {
+      places.floats[row] = euclidean(places.query, places.rows.subspan(row * stride, stride));
+    }
+  });
+  return contenders;
+}
+
+}  // namespace
+
+std::vector<float> random_unit(std::mt19937& random, std::size_t size) {
+  std::normal_distribution<float> normal;
+  std::vector<float> vector(size);
+  for (float& value : vector) value = normal(random);
+  normalise(vector);
+  return vector;
+}
+
+void time_columns(const Capacity& size, const RivalColumns& rivals, std::size_t rounds,
+                  std::vector<Contender>& timed) {
+  Places places(size);
+  std::vector<Contender> contenders = our_columns(places);
+  if (rivals) {
+    for (Contender& rival : rivals({size, places.query, places.rows})) {
+      contenders.push_back(std::move(rival));
+    }
+  }
+  time_in_turn(std::move(contenders), rounds, timed);
+}
+
+}  // namespace seqloop::program
