@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,10 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
   if (config.use == Use::close_loops && map.size() != 0) {
     faults.push_back({"map", "it holds " + std::to_string(map.size()) + " places already",
                       "closing loops starts from an empty map"});
+  }
+  if (map.rows().form() != DescriptorForm(config, map.descriptor_size())) {
+    faults.push_back({"map", "it was made for another configuration",
+                      "give both the same arithmetic, difference and relocalising"});
   }
   if (config.use == Use::localise && map.size() != 0 &&
       config.standardisation.on != (map.statistics().frames() != 0)) {
@@ -66,6 +71,12 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   const std::size_t window = config.sequence_length + 1;
   const std::size_t lines =
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();
+  const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
+  if (relocalises(config)) {
+    const std::size_t rows = std::min(AdmittedRows::most_rows(config), capacity.places);
+    return {rows, distances_a_frame(config) + change, rows * lines,
+            PromisingRows::most_sketches(config, capacity.places)};
+  }
   // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
   // column that repeats another (`skip`) has as many rows more to look at as it is younger, and
   // columns that reach the newest places grow with them. Elsewhere a full search finds the whole
@@ -79,8 +90,7 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
     const std::size_t growing = reach - std::min(reach, config.exclude);
     distances += ds * (ds + 1) / 2 + (ds + growing) * growing;
   }
-  if (config.candidates == Candidates::adaptive) distances += ChangeDegree::reach;
-  return {capacity.places, distances, capacity.places * lines};
+  return {capacity.places, distances + change, capacity.places * lines, 0};
 }
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
@@ -100,9 +110,12 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       trajectories_(arena, config.sequence_length, config.vmin, config.vmax),
       statistics_(arena, capacity.descriptor_size),
       slices_(arena, config, history(config), capacity),
-      search_(arena, trajectories_, capacity.places),
+      search_(arena, trajectories_, config, capacity.places),
       ranges_(arena, config),
-      decision_(config.rwindow) {}
+      promising_(arena, config, capacity.places),
+      admitted_(arena, config),
+      decision_(config.rwindow),
+      standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   FrameReport report;
@@ -111,22 +124,27 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   const std::size_t after_centre = config_.sequence_length - trajectories_.centre();
 
   const bool readable = take_query(descriptor);
-  if (config_.use == Use::close_loops)
-    report.map_full = !map_->add(newest_query().first(map_->descriptor_size()));
+  if (config_.use == Use::close_loops) report.map_full = !become_place();
   report.work.distances = fill_columns();
+  const std::size_t rows =
+      rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
+  if (relocalises(config_)) {
+    report.work.sketches = promising_.look(slices_, *map_, rows, window_began_);
+  }
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
   if (report.newest >= window_began_ + after_centre) report.frame = report.newest - after_centre;
-  if (report.newest < window_began_ + config_.sequence_length) return report;
+  const bool whole = report.newest >= window_began_ + config_.sequence_length;
+  if (!whole && !relocalises(config_)) return report;
 
-  const std::uint64_t oldest = report.newest - config_.sequence_length;
-  const std::size_t rows = rows_searched(*report.frame);
-  const std::span<const CandidateRun> runs = ranges_.choose(rows);
-  report.full_search = ranges_.full_search();
-  for (const CandidateRun run : runs) {
-    report.work.distances += fill_window(oldest, run, rows);
-    report.work.line_sums += search_.score(slices_, oldest, run, rows);
+  report.full_search = admit_candidates(rows);
+  report.work.distances += admitted_.distances();
+  if (!whole) return report;
+  for (const CandidateRun run : admitted_.runs()) {
+    report.work.line_sums +=
+        search_.score(slices_, map_->order(), report.newest - config_.sequence_length, run, rows);
   }
-  const auto best = decision_.decide(search_.scores(), runs, report.full_search);
+  const bool keep_rival = report.full_search || relocalises(config_);
+  const auto best = decision_.decide(search_.scores(), admitted_.runs(), keep_rival);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
 
@@ -136,7 +154,8 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
     change = change_degree_.advance(slices_, *report.frame);
     report.work.distances += change_degree_.distances();
   }
-  ranges_.update(search_.scores(), best ? std::optional(best->row) : std::nullopt, change);
+  ranges_.update(search_.scores(), admitted_.runs(), best ? std::optional(best->row) : std::nullopt,
+                 change);
   return report;
 }
 
@@ -148,50 +167,66 @@ void Detector::skip(std::uint64_t frames) noexcept {
   }
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     slices_.repeat();
-    if (config_.use == Use::close_loops) {
-      static_cast<void>(map_->add(newest_query().first(map_->descriptor_size())));
-    }
+    if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
   ranges_.skip(frames);
+  promising_.skip(frames);
   change_degree_ = {};
 }
 
 void Detector::restart() noexcept {
   window_began_ = slices_.frames();
   ranges_.restart();
+  promising_.restart();
   change_degree_ = {};
 }
 
-/// Puts the newest frame's descriptor into its column: standardised by what the drive has shown so
-/// far, or a copy of the frame before when there is nothing to put.
+/// Takes the newest frame's descriptor: standardised by what the drive has shown so far, or that of
+/// the frame before when there is nothing to take.
 bool Detector::take_query(std::span<const float> descriptor) noexcept {
-  const std::uint64_t frame = slices_.frames();
-  const std::span<float> query = slices_.push();
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
-    if (frame == 0) {
-      std::ranges::fill(query, 0.0F);
-    } else {
-      std::ranges::copy(slices_.query(frame - 1), query.begin());
-    }
+    slices_.push_again();
     return false;
   }
-  if (config_.standardisation.on) {
-    if (statistics_.frames() == 0) {
-      statistics_.start_flat(descriptor, config_.standardisation.prior_frames);
-    }
-    statistics_.follow(descriptor, config_.standardisation.horizon);
-    statistics_.standardise(descriptor, query);
-  } else {
-    std::ranges::copy(descriptor, query.begin());
+  if (!config_.standardisation.on) {
+    slices_.push(descriptor);
+    return true;
   }
+  if (statistics_.frames() == 0) {
+    statistics_.start_flat(descriptor, config_.standardisation.prior_frames);
+  }
+  statistics_.follow(descriptor, config_.standardisation.horizon);
+  statistics_.standardise(descriptor, standardised_);
+  slices_.push(standardised_);
   return true;
 }
 
-/// Rows of the map that lines may touch when a frame is matched.
+/// Closing loops: the newest frame becomes a place, if the map has room or makes some.
+bool Detector::become_place() noexcept {
+  // Places that the newest frames still need as they were: those that are no candidates yet.
+  const std::size_t keep = config_.exclude + config_.sequence_length;
+  const PlaceMap::Taken taken =
+      map_->take(slices_.queries(), slices_.row_of(slices_.frames() - 1), keep);
+  if (taken.removed) {
+    slices_.forget(*taken.slot);
+    ranges_.removed(*taken.removed);
+    promising_.removed(*taken.removed);
+  }
+  return taken.slot.has_value();
+}
+
+/// Rows of the map that lines may touch when a frame is matched: closing loops, the places that are
+/// old enough.
 std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
   if (config_.use == Use::localise) return map_->size();
   if (centre <= config_.exclude) return 0;
-  return static_cast<std::size_t>(std::min<std::uint64_t>(centre - config_.exclude, map_->size()));
+  const std::uint64_t old = centre - config_.exclude;
+  if (map_->order().straight()) {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(old, map_->size()));
+  }
+  // Every frame became a place, so numbers are frames; the newest ones are all there.
+  const std::uint64_t newer = slices_.frames() - old;
+  return map_->size() - static_cast<std::size_t>(std::min<std::uint64_t>(newer, map_->size()));
 }
 
 /// Rows whose neighbourhood is all there, so that what is enhanced by it stays right.
@@ -218,21 +253,22 @@ std::size_t Detector::fill_columns() noexcept {
   return computed;
 }
 
-/// Computes what lines through the run can touch.
-std::size_t Detector::fill_window(std::uint64_t oldest, CandidateRun run,
-                                  std::size_t rows) noexcept {
-  std::size_t computed = 0;
-  const auto first_row = static_cast<std::int64_t>(run.first);
-  const auto last_row = static_cast<std::int64_t>(run.last);
-  for (std::size_t i = 0; i < trajectories_.window(); ++i) {
-    const auto first = std::max<std::int64_t>(first_row + trajectories_.lowest(i), 0);
-    const auto last =
-        std::min(last_row + trajectories_.highest(i), static_cast<std::int64_t>(rows));
-    if (first >= last) continue;
-    computed += slices_.fill(*map_, oldest + i, static_cast<std::size_t>(first),
-                             static_cast<std::size_t>(last));
+/// Decides which rows the centre frame is compared with, and computes their differences.
+/// @return whether they are all
+bool Detector::admit_candidates(std::size_t rows) noexcept {
+  const AdmittedRows::Window window{&slices_,         map_, &trajectories_, window_began_,
+                                    slices_.frames(), rows};
+  const std::span<const CandidateRun> ranges = ranges_.choose(rows);
+  const std::span<const PromisingRows::Promise> promises = promising_.promises();
+  const std::size_t ahead = config_.sequence_length - trajectories_.centre();
+  admitted_.clear();
+  // The best of both first, so that neither starves.
+  for (std::size_t i = 0; i < std::max(ranges.size(), promises.size()); ++i) {
+    if (i < ranges.size()) admitted_.admit(window, ranges[i]);
+    if (i >= promises.size() || promises[i].row < ahead) continue;
+    admitted_.admit(window, ranges_.around(promises[i].row - ahead, rows));
   }
-  return computed;
+  return ranges_.full_search();
 }
 
 /// Names the gate, and the line behind the best row.
@@ -243,9 +279,13 @@ void Detector::decide(FrameReport& report, const std::optional<BestRow>& best) c
   }
   const std::size_t line = search_.line(best->row);
   const auto ahead = static_cast<std::size_t>(trajectories_.offsets(line).back());
-  report.match = Match{best->row, best->score, best->uniqueness, trajectories_.velocity(line),
-                       best->row + ahead};
-  const bool unique = best->uniqueness <= config_.max_uniqueness;
+  const auto number = [&](std::size_t row) {
+    return static_cast<std::size_t>(map_->order().number(row));
+  };
+  report.match = Match{number(best->row), static_cast<float>(best->score),
+                       static_cast<float>(best->uniqueness), trajectories_.velocity(line),
+                       number(best->row + ahead)};
+  const bool unique = report.match->uniqueness <= config_.max_uniqueness;
   report.gate = unique ? Gate::match : Gate::not_unique;
 }
 

@@ -2,57 +2,127 @@
 
 #include <algorithm>
 
-#include "seqloop/difference.hpp"
-
 namespace seqloop {
+namespace {
+
+/// What 1 is among enhanced whole numbers: as much as leaves the largest one below 65,535.
+double unit_of(const MatcherConfig& config, const DescriptorForm& form) {
+  if (config.arithmetic == Arithmetic::float32) return 1.0;
+  constexpr double largest = 65'534.0;
+  return config.enhance ? largest / Contrast(config.rwindow).largest() : form.unit();
+}
+
+}  // namespace
 
 DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
                                    const Capacity& capacity)
-    : kind_(config.difference),
+    : whole_(config.arithmetic != Arithmetic::float32),
       enhance_(config.enhance),
       contrast_(config.rwindow),
+      unit_(unit_of(config, DescriptorForm(config, capacity.descriptor_size))),
       history_(history),
-      stride_(padded_size(capacity.descriptor_size)),
-      descriptor_size_(capacity.descriptor_size),
-      queries_(arena.take<float>("query descriptors", history * stride_)),
-      differences_(arena, "difference slices", "filled parts of the slices",
-                   config.sequence_length + 1, capacity.places),
+      queries_(arena, {"query descriptors", "lengths of query descriptors", "query sketches"},
+               DescriptorForm(config, capacity.descriptor_size), history),
+      exact_(arena, "difference slices", "filled parts of the slices",
+             whole_ ? 0 : config.sequence_length + 1, capacity.places),
       enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
-                enhance_ ? config.sequence_length + 1 : 0, capacity.places) {}
+                whole_ || !enhance_ ? 0 : config.sequence_length + 1, capacity.places),
+      whole_differences_(arena, "difference slices", "filled parts of the slices",
+                         whole_ ? config.sequence_length + 1 : 0, capacity.places),
+      whole_enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
+                      whole_ && enhance_ ? config.sequence_length + 1 : 0, capacity.places) {}
 
-std::span<float> DifferenceSlices::push() noexcept {
+void DifferenceSlices::push(std::span<const float> descriptor) noexcept {
+  queries_.store(row_of(frames_++), descriptor);
+}
+
+void DifferenceSlices::push_again() noexcept {
   const std::uint64_t frame = frames_++;
-  differences_.begin(frame);
-  if (enhance_) enhanced_.begin(frame);
-  return descriptor(frame);
+  if (frame > 0) queries_.copy(row_of(frame), queries_, row_of(frame - 1));
 }
 
 void DifferenceSlices::repeat() noexcept {
-  const std::uint64_t frame = frames_++;
-  std::ranges::copy(query(frame - 1), descriptor(frame).begin());
-  differences_.repeat(frame);
-  if (enhance_) enhanced_.repeat(frame);
+  push_again();
+  const std::uint64_t frame = frames_ - 1;
+  const auto repeat = [frame](auto& ring) { ring.repeat(frame); };
+  if (whole_) {
+    repeat(whole_differences_);
+    if (enhance_) repeat(whole_enhanced_);
+  } else {
+    repeat(exact_);
+    if (enhance_) repeat(enhanced_);
+  }
 }
 
-float DifferenceSlices::between(std::uint64_t a, std::uint64_t b) const noexcept {
-  return difference(kind_, query(a), query(b), descriptor_size_);
+template <class Value>
+std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing<Value>& enhanced,
+                                      const PlaceMap& map, std::uint64_t frame, std::size_t first,
+                                      std::size_t last) noexcept {
+  const std::size_t reach = enhance_ ? contrast_.reach() : 0;
+  const std::size_t from = first - std::min(first, reach);
+  const std::size_t to = std::min(last + reach, map.size());
+  std::size_t computed = 0;
+  map.order().in_slots(from, to, [&](std::size_t, std::size_t slot, std::size_t count) {
+    computed +=
+        differences.fill(frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
+          map.rows().compare(queries_, row_of(frame), begin, out);
+        });
+  });
+  if (enhance_) {
+    enhanced.fill(frame, first, last, [&](std::size_t begin, std::span<Value> out) {
+      const std::span<const Value> column(differences.column(frame), map.size());
+      const double scale = whole_ ? unit_ : 1.0;
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = contrast_.enhance(column, begin + i, scale);
+      }
+    });
+  }
+  return computed;
 }
 
 std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std::size_t first,
                                    std::size_t last) noexcept {
   if (first >= last) return 0;
+  return whole_ ? fill_in(whole_differences_, whole_enhanced_, map, frame, first, last)
+                : fill_in(exact_, enhanced_, map, frame, first, last);
+}
+
+std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,
+                                      std::size_t last) const noexcept {
+  if (first >= last) return 0;
   const std::size_t reach = enhance_ ? contrast_.reach() : 0;
-  const std::size_t from = first - std::min(first, reach);
-  const std::size_t to = std::min(last + reach, map.size());
-  const std::size_t computed = differences_.fill(frame, from, to, [&](std::size_t row) {
-    return difference(kind_, query(frame), map.place(row), descriptor_size_);
-  });
-  if (enhance_) {
-    const std::span<const float> column = differences_.column(frame);
-    enhanced_.fill(frame, first, last,
-                   [&](std::size_t row) { return contrast_.enhance(column, row, map.size()); });
+  std::size_t count = 0;
+  map.order().in_slots(first - std::min(first, reach), std::min(last + reach, map.size()),
+                       [&](std::size_t, std::size_t slot, std::size_t rows) {
+                         count += whole_ ? whole_differences_.missing(frame, slot, slot + rows)
+                                         : exact_.missing(frame, slot, slot + rows);
+                       });
+  return count;
+}
+
+void DifferenceSlices::forget(std::size_t slot) noexcept {
+  if (whole_) {
+    whole_differences_.forget(slot);
+  } else {
+    exact_.forget(slot);
   }
-  return computed;
+}
+
+void DifferenceSlices::show(const PlaceMap& map, std::uint64_t frame,
+                            std::span<float> out) const noexcept {
+  const auto show = [&](const auto& ring) {
+    for (std::size_t row = 0; row < out.size(); ++row) {
+      const auto value = ring.value(frame, map.order().slot(row));
+      out[row] = value == ring.not_computed
+                     ? -1.0F
+                     : static_cast<float>(static_cast<double>(value) / unit_);
+    }
+  };
+  if (whole_) {
+    show(enhance_ ? whole_enhanced_ : whole_differences_);
+  } else {
+    show(enhance_ ? enhanced_ : exact_);
+  }
 }
 
 }  // namespace seqloop

@@ -5,17 +5,17 @@
 namespace seqloop {
 namespace {
 
-constexpr float no_score = std::numeric_limits<float>::infinity();
+constexpr double no_score = std::numeric_limits<double>::infinity();
 
 struct Lowest {
   std::size_t row = 0;
-  float score = no_score;
+  double score = no_score;
   std::size_t scored = 0;
 };
 
 /// The lowest score of the candidates that `counts` lets in.
 template <class Counts>
-Lowest lowest(std::span<const float> scores, std::span<const CandidateRun> runs, Counts counts) {
+Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs, Counts counts) {
   Lowest found;
   for (const CandidateRun run : runs) {
     for (std::size_t row = run.first; row < run.last; ++row) {
@@ -29,19 +29,19 @@ Lowest lowest(std::span<const float> scores, std::span<const CandidateRun> runs,
 
 }  // namespace
 
-std::optional<BestRow> LoopDecision::decide(std::span<const float> scores,
+std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
                                             std::span<const CandidateRun> runs,
-                                            bool full_search) noexcept {
+                                            bool keep_rival) noexcept {
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
   if (best.scored == 0) return std::nullopt;
   const Lowest rival = lowest(scores, runs, [&](std::size_t row) {
     return row + half_window_ < best.row || row > best.row + half_window_;
   });
-  const std::optional<float> rival_score =
-      rival.scored > 0 ? std::optional(rival.score) : last_full_rival_;
-  if (full_search) last_full_rival_ = rival_score;
-  const float uniqueness =
-      rival_score ? best.score / *rival_score : std::numeric_limits<float>::quiet_NaN();
+  const std::optional<double> rival_score =
+      rival.scored > 0 ? std::optional(rival.score) : last_rival_;
+  if (keep_rival) last_rival_ = rival_score;
+  const double uniqueness =
+      rival_score ? best.score / *rival_score : std::numeric_limits<double>::quiet_NaN();
   return BestRow{best.row, best.score, uniqueness, best.scored};
 }
 

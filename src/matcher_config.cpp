@@ -44,7 +44,25 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
   }
 }
 
+/// Distances that a range of num + 1 rows takes a frame while it moves along with the robot: the
+/// newest column, and what lines to the window's oldest column reach in addition.
+std::size_t distances_of_one_range(const MatcherConfig& config) {
+  const auto spread = static_cast<std::size_t>(
+      std::ceil((config.vmax - config.vmin) * static_cast<double>(config.sequence_length)));
+  return config.num + 1 + spread;
+}
+
 }  // namespace
+
+bool relocalises(const MatcherConfig& config) noexcept {
+  return config.relocalising.on && config.candidates != Candidates::all;
+}
+
+std::size_t distances_a_frame(const MatcherConfig& config) noexcept {
+  constexpr std::size_t least = 256;
+  if (config.relocalising.distances != 0) return config.relocalising.distances;
+  return std::max(least, 4 * distances_of_one_range(config));
+}
 
 Faults validate(const MatcherConfig& config) {
   constexpr std::size_t many = 1'000'000'000;
@@ -67,6 +85,23 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "initial-k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
+  if (relocalises(config)) {
+    check_range(faults, "slice", config.relocalising.slice, 1, many);
+    const std::size_t least = distances_of_one_range(config);
+    if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
+      faults.push_back({"distances",
+                        std::to_string(config.relocalising.distances) +
+                            " is less than one range takes, " + std::to_string(least),
+                        "raise it, or lower num, or ds, or vmax"});
+    }
+  }
+  if (config.arithmetic != Arithmetic::float32 && config.difference != Difference::euclidean) {
+    faults.push_back({"arithmetic", "pictures are compared as float only", "--arithmetic float"});
+  }
+  if (config.full_map != FullMap::refuse && config.enhance) {
+    faults.push_back({"full-map", "differences are enhanced by places that would go",
+                      "--full-map refuse, or switch enhance off"});
+  }
   check_range(faults, "exclude", config.exclude, 1, many);
   check_range(faults, "standardise-prior", config.standardisation.prior_frames, 1, many);
   check_range(faults, "standardise-horizon", config.standardisation.horizon, 1, many);

@@ -2,60 +2,118 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
-
-#include "seqloop/difference.hpp"
 
 namespace seqloop {
 namespace {
 
-const Capacity& checked(const Capacity& capacity) {
-  Faults faults = validate(capacity);
+// Rows among which the one that is missed least goes, each time a full map thins out.
+constexpr std::size_t thinned_among = 64;
+
+void check(const MatcherConfig& config, const Capacity& capacity) {
+  Faults faults = validate(config);
+  for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
+  const bool small = config.arithmetic != Arithmetic::float32 || relocalises(config);
+  if (small && capacity.descriptor_size > most_small_values) {
+    faults.push_back({"arithmetic",
+                      std::to_string(capacity.descriptor_size) + " values are too many for it, " +
+                          std::to_string(most_small_values) + " at most",
+                      "--arithmetic float, and --relocalise off"});
+  }
   if (!faults.empty()) throw SetupError(std::move(faults));
-  return capacity;
 }
 
 }  // namespace
 
-std::vector<BufferSize> PlaceMap::plan(const Capacity& capacity) {
+std::vector<BufferSize> PlaceMap::plan(const MatcherConfig& config, const Capacity& capacity) {
+  check(config, capacity);
   std::vector<BufferSize> buffers;
-  PlaceMap measured(Arena(buffers), checked(capacity), ArenaMemory());
+  const PlaceMap measured(Arena(buffers), config, capacity, ArenaMemory());
   return buffers;
 }
 
-PlaceMap::PlaceMap(const Capacity& capacity, std::span<std::byte> memory)
-    : PlaceMap(capacity, ArenaMemory(bytes_needed(capacity), memory)) {}
+PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity,
+                   std::span<std::byte> memory)
+    : PlaceMap(config, capacity, ArenaMemory(bytes_needed(config, capacity), memory)) {}
 
-PlaceMap::PlaceMap(const Capacity& capacity, ArenaMemory&& memory)
-    : PlaceMap(Arena(memory.span()), capacity, std::move(memory)) {}
+PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory)
+    : PlaceMap(Arena(memory.span()), config, capacity, std::move(memory)) {}
 
-PlaceMap::PlaceMap(Arena arena, const Capacity& capacity, ArenaMemory&& memory)
+PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
+                   ArenaMemory&& memory)
     : memory_(std::move(memory)),
-      capacity_(capacity),
-      stride_(padded_size(capacity.descriptor_size)),
+      standardises_(config.standardisation.on && config.use == Use::localise),
+      full_map_(config.full_map),
       statistics_(arena, capacity.descriptor_size),
-      places_(arena.take<float>("places", capacity.places * stride_)) {}
+      order_(arena, capacity.places),
+      rows_(arena, {"places", "lengths of places", "sketches of places"},
+            DescriptorForm(config, capacity.descriptor_size), capacity.places),
+      standardised_(
+          arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
+      spacing_(arena.take<float>("spacing of places",
+                                 full_map_ == FullMap::thin ? capacity.places : 0)) {}
 
-bool PlaceMap::add(std::span<const float> descriptor) noexcept {
-  if (size_ == capacity_.places || descriptor.size() != capacity_.descriptor_size) return false;
-  if (statistics_.frames() != 0) return false;
-  if (!std::ranges::all_of(descriptor, [](float value) { return std::isfinite(value); })) {
-    return false;
-  }
-  std::ranges::copy(descriptor, places_.subspan(size_ * stride_, stride_).begin());
-  ++size_;
+bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
+  return descriptor.size() == descriptor_size() &&
+         std::ranges::all_of(descriptor, [](float value) { return std::isfinite(value); });
+}
+
+bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
+  if (!standardises_ || size() != 0 || !fits(descriptor)) return false;
+  statistics_.observe(descriptor);
   return true;
 }
 
-void PlaceMap::standardise() noexcept {
-  if (statistics_.frames() != 0) return;
-  for (std::size_t row = 0; row < size_; ++row) {
-    statistics_.observe(place(row).first(capacity_.descriptor_size));
+bool PlaceMap::add(std::span<const float> descriptor) noexcept {
+  if (size() == capacity() || !fits(descriptor)) return false;
+  if (statistics_.frames() != 0) {
+    statistics_.standardise(descriptor, standardised_);
+    descriptor = standardised_;
   }
-  for (std::size_t row = 0; row < size_; ++row) {
-    const std::span<float> place = places_.subspan(row * stride_, capacity_.descriptor_size);
-    statistics_.standardise(place, place);
+  rows_.store(order_.append(), descriptor);
+  return true;
+}
+
+PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
+                               std::size_t keep) noexcept {
+  Taken taken;
+  if (size() == capacity()) {
+    taken.removed = row_to_go(keep);
+    if (!taken.removed) return taken;
+    order_.remove(*taken.removed);
+    // The row behind the gap has another one before it now.
+    const std::size_t behind = *taken.removed;
+    if (full_map_ == FullMap::thin && behind > 0 && behind < size()) {
+      spacing_[order_.slot(behind)] =
+          static_cast<float>(rows_.between(order_.slot(behind), order_.slot(behind - 1)));
+    }
   }
+  const std::size_t slot = order_.append();
+  rows_.copy(slot, queries, query);
+  if (full_map_ == FullMap::thin && size() > 1) {
+    spacing_[slot] = static_cast<float>(rows_.between(slot, order_.slot(size() - 2)));
+  }
+  taken.slot = slot;
+  return taken;
+}
+
+std::optional<std::size_t> PlaceMap::row_to_go(std::size_t keep) noexcept {
+  if (full_map_ == FullMap::refuse || size() <= keep) return std::nullopt;
+  if (full_map_ == FullMap::forget_oldest) return 0;
+  // The first and the last row of what may go have no two neighbours.
+  const std::size_t last = size() - std::max<std::size_t>(keep, 1);
+  if (hand_ + 1 >= last) hand_ = 0;
+  const std::size_t end = std::min(hand_ + thinned_among, last - 1);
+  std::size_t least = std::min(hand_ + 1, last - 1);
+  const auto missed = [&](std::size_t row) {
+    return spacing_[order_.slot(row)] + spacing_[order_.slot(row + 1)];
+  };
+  for (std::size_t row = least; row <= end; ++row) {
+    if (missed(row) < missed(least)) least = row;
+  }
+  hand_ = end;
+  return least;
 }
 
 }  // namespace seqloop

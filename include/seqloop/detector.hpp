@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "seqloop/admitted_rows.hpp"
 #include "seqloop/arena.hpp"
 #include "seqloop/candidate_ranges.hpp"
 #include "seqloop/change_degree.hpp"
@@ -14,6 +15,7 @@
 #include "seqloop/loop_decision.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
+#include "seqloop/promising_rows.hpp"
 #include "seqloop/running_statistics.hpp"
 #include "seqloop/sequence_search.hpp"
 #include "seqloop/trajectories.hpp"
@@ -22,7 +24,10 @@ namespace seqloop {
 
 /// Answers, frame by frame, whether the robot has been here before. One step for all methods:
 /// SeqCNNSLAM, A-SeqCNNSLAM and O-SeqCNNSLAM differ in which rows of the map are candidates,
-/// SeqSLAM in how descriptors are compared and that differences are enhanced.
+/// SeqSLAM in how descriptors are compared and that differences are enhanced. Where A- and
+/// O-SeqCNNSLAM relocalise, candidates come from the last frame's best rows and from a look at a
+/// slice of the map, the most promising first, until the frame's distances are spent: no frame's
+/// work grows with the map.
 class Detector {
  public:
   /// Bytes of every buffer beside the map's.
@@ -61,19 +66,20 @@ class Detector {
   /// of them are frames at which the scene stood still, so that trajectories keep their velocities;
   /// closing loops, they become places. After more, what was seen before says nothing of now: none
   /// of them is counted, and the window begins anew (`warming_up`).
-  /// Work: N + D copies a frame; no distances, no line-sums. Allocates: never.
+  /// Work: N + D copies a frame at most; no distances, no line-sums. Allocates: never.
   void skip(std::uint64_t frames) noexcept;
 
-  /// What the steps compared: the newest frame's descriptor, standardised if that is on.
-  /// @return [padded_size(D)]; at least one step must have been made
-  [[nodiscard]] std::span<const float> newest_query() const noexcept {
-    return slices_.query(slices_.frames() - 1);
+  /// About what the newest step compared: its descriptor, standardised if that is on.
+  /// @param out [map.rows().restored_size()]; at least one step must have been made
+  void newest_query(std::span<float> out) const noexcept {
+    slices_.queries().restore(slices_.row_of(slices_.frames() - 1), out);
   }
 
-  /// The newest frame's column of the difference matrix: [capacity.places], below zero where
-  /// nothing was computed (everywhere, where not all rows are candidates, until a line needs it).
-  [[nodiscard]] std::span<const float> newest_column() const noexcept {
-    return slices_.column(slices_.frames() - 1);
+  /// The newest frame's column of the difference matrix.
+  /// @param out [at most map.size()] below zero where nothing was computed (everywhere, where not
+  ///   all rows are candidates, until a line needs it)
+  void newest_column(std::span<float> out) const noexcept {
+    slices_.show(*map_, slices_.frames() - 1, out);
   }
 
  private:
@@ -82,12 +88,12 @@ class Detector {
            ArenaMemory&& memory);
 
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
+  [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
   [[nodiscard]] std::size_t complete_rows() const noexcept;
   [[nodiscard]] std::size_t fill_columns() noexcept;
-  [[nodiscard]] std::size_t fill_window(std::uint64_t oldest, CandidateRun run,
-                                        std::size_t rows) noexcept;
+  [[nodiscard]] bool admit_candidates(std::size_t rows) noexcept;
   void decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept;
 
   ArenaMemory memory_;
@@ -99,8 +105,11 @@ class Detector {
   DifferenceSlices slices_;
   SequenceSearch search_;
   CandidateRanges ranges_;
+  PromisingRows promising_;
+  AdmittedRows admitted_;
   ChangeDegree change_degree_;
   LoopDecision decision_;
+  std::span<float> standardised_;  // [D]
 };
 
 }  // namespace seqloop

@@ -7,6 +7,7 @@
 #include "seqloop/arena.hpp"
 #include "seqloop/column_ring.hpp"
 #include "seqloop/contrast.hpp"
+#include "seqloop/descriptor_rows.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
 
@@ -14,7 +15,7 @@ namespace seqloop {
 
 /// The newest columns of the difference matrix D, ds + 1 of them, filled where somebody looks and
 /// enhanced where that is asked for. A difference is computed at most once. Columns are named by
-/// the frame that they belong to.
+/// the frame that they belong to. Differences are float, or whole numbers of `unit()`s.
 class DifferenceSlices {
  public:
   /// @param history  query descriptors kept, above ds
@@ -23,26 +24,31 @@ class DifferenceSlices {
   DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
                    const Capacity& capacity);
 
-  /// Begins the next frame's column, forgetting the oldest, and returns where its descriptor goes.
-  /// @return [padded_size(D)]: to be written up to D before anything else is asked
-  /// Work: N, to mark every difference as not computed. Allocates: never.
-  [[nodiscard]] std::span<float> push() noexcept;
+  /// Takes the next frame's descriptor, forgetting the oldest.
+  /// @param descriptor [D] finite. Work: D. Allocates: never.
+  void push(std::span<const float> descriptor) noexcept;
 
-  /// Takes another frame that is the same as the newest one; at least one must have been pushed.
-  /// Work: N + D copies. Allocates: never.
+  /// Takes another frame with the newest one's descriptor, or with none, all zero, if it is the
+  /// first. Work: D copies. Allocates: never.
+  void push_again() noexcept;
+
+  /// The same, with the differences that are computed already; at least one must have been pushed.
+  /// Work: N + D copies at most. Allocates: never.
   void repeat() noexcept;
 
   /// Frames pushed so far.
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
 
-  /// @param frame one of the newest `history` frames
-  /// @return [padded_size(D)]
-  [[nodiscard]] std::span<const float> query(std::uint64_t frame) const noexcept {
-    return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
+  /// The newest `history` frames' descriptors; a frame's row is `row_of(frame)`.
+  [[nodiscard]] const DescriptorRows& queries() const noexcept { return queries_; }
+  [[nodiscard]] std::size_t row_of(std::uint64_t frame) const noexcept {
+    return static_cast<std::size_t>(frame % history_);
   }
 
   /// The difference of two of the newest `history` frames. Work: D MACs.
-  [[nodiscard]] float between(std::uint64_t a, std::uint64_t b) const noexcept;
+  [[nodiscard]] double between(std::uint64_t a, std::uint64_t b) const noexcept {
+    return queries_.between(row_of(a), row_of(b));
+  }
 
   /// Makes sure that the differences of a frame to the rows [first, last) are there; enhanced ones
   /// need those of rwindow / 2 rows on either side too.
@@ -50,28 +56,52 @@ class DifferenceSlices {
   std::size_t fill(const PlaceMap& map, std::uint64_t frame, std::size_t first,
                    std::size_t last) noexcept;
 
+  /// How many `fill` would have to compute. Work: reads last - first marks.
+  [[nodiscard]] std::size_t missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,
+                                    std::size_t last) const noexcept;
+
+  /// A slot of the map holds another place from now on. Work: ds marks.
+  void forget(std::size_t slot) noexcept;
+
+  /// Whether differences are whole numbers.
+  [[nodiscard]] bool whole() const noexcept { return whole_; }
+
+  /// What a difference of 1 is; 1 for float.
+  [[nodiscard]] double unit() const noexcept { return unit_; }
+
+  /// A frame's differences by slot of the map, meaningful where filled: 0 .. 2 between unit
+  /// vectors, or what `Contrast` makes of it, in `unit()`s.
   /// @param frame one of the newest ds + 1 frames
-  /// @return [capacity.places] where filled: distance (0 .. 2 between unit vectors), or what
-  ///   `Contrast` makes of it
-  [[nodiscard]] std::span<const float> column(std::uint64_t frame) const noexcept {
-    return enhance_ ? enhanced_.column(frame) : differences_.column(frame);
+  [[nodiscard]] const float* column(std::uint64_t frame, float /*kind*/) const noexcept {
+    return (enhance_ ? enhanced_ : exact_).column(frame);
   }
+  [[nodiscard]] const std::uint16_t* column(std::uint64_t frame,
+                                            std::uint16_t /*kind*/) const noexcept {
+    return (enhance_ ? whole_enhanced_ : whole_differences_).column(frame);
+  }
+
+  /// A frame's differences row by row, to show.
+  /// @param out [map.size()] below zero where nothing was computed
+  void show(const PlaceMap& map, std::uint64_t frame, std::span<float> out) const noexcept;
 
  private:
-  [[nodiscard]] std::span<float> descriptor(std::uint64_t frame) noexcept {
-    return queries_.subspan(static_cast<std::size_t>(frame % history_) * stride_, stride_);
-  }
+  template <class Value>
+  std::size_t fill_in(ColumnRing<Value>& differences, ColumnRing<Value>& enhanced,
+                      const PlaceMap& map, std::uint64_t frame, std::size_t first,
+                      std::size_t last) noexcept;
 
-  Difference kind_;
+  bool whole_;
   bool enhance_;
   Contrast contrast_;
+  double unit_;
   std::size_t history_;
-  std::size_t stride_;
-  std::size_t descriptor_size_;
   std::uint64_t frames_ = 0;
-  std::span<float> queries_;  // [history, padded_size(D)]
-  ColumnRing differences_;
-  ColumnRing enhanced_;  // empty unless asked for
+  DescriptorRows queries_;  // [history]
+  // Of these four only what the configuration asks for has any memory.
+  ColumnRing<float> exact_;
+  ColumnRing<float> enhanced_;
+  ColumnRing<std::uint16_t> whole_differences_;
+  ColumnRing<std::uint16_t> whole_enhanced_;
 };
 
 }  // namespace seqloop

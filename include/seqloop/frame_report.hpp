@@ -25,20 +25,23 @@ inline constexpr std::size_t gates = 6;
 
 /// The best row of the map for a frame.
 struct Match {
-  std::size_t place = 0;  ///< row of the map at the centre column
-  float score = 0.0F;     ///< mean difference along the line, 0 .. 2; smaller is more certain
+  /// The place at the centre column, by its number: places are counted from 0 as they are added,
+  /// those that a full map forgets too.
+  std::size_t place = 0;
+  float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
   /// Score by the best rival's score: 0 .. 1; above 1 or infinite when the rival of the last full
   /// search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
   double velocity = 0.0;  ///< rows a frame; NaN for single frames
-  std::size_t head = 0;   ///< row of the map at the newest column
+  std::size_t head = 0;   ///< the place at the newest column
 };
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.
 struct Work {
   std::size_t candidates = 0;  ///< rows that got a score
   std::size_t distances = 0;   ///< descriptor distances computed
-  std::size_t line_sums = 0;   ///< lines summed, ds + 1 adds each
+  std::size_t line_sums = 0;   ///< lines summed, of ds + 1 differences each
+  std::size_t sketches = 0;    ///< pairs of sketches compared, 32 bytes each, to relocalise
 
   bool operator==(const Work&) const = default;
 };

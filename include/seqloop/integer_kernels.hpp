@@ -8,20 +8,27 @@
 namespace seqloop {
 
 /// Bytes that a stored row of small values is a whole number of: a cache line. The rest is zero.
-inline constexpr std::size_t row_bytes = 64;
+inline constexpr std::size_t stored_line = 64;
 
 /// Bytes that one stored row takes: D rounded up to whole cache lines.
 [[nodiscard]] constexpr std::size_t padded_bytes(std::size_t descriptor_size) noexcept {
-  return (descriptor_size + row_bytes - 1) / row_bytes * row_bytes;
+  return (descriptor_size + stored_line - 1) / stored_line * stored_line;
 }
 
 /// Values of a vector up to which no dot product of values -127 .. 127 leaves 32 bits:
 /// 127 * 127 * 2^17 < 2^31.
 inline constexpr std::size_t most_small_values = std::size_t{1} << 17U;
 
-/// Sums over int8 vectors and over bits, made for one kind of processor. Integers have no rounding:
-/// every variant gives the same numbers to the last bit. Memory may lie anywhere; nothing outside
-/// what is named is read. Alike in all: no allocation.
+/// One stretch of a line through sums: what is added from begin (left out) to end, as the
+/// difference of two sums from the start. Both are offsets into the same values.
+struct LineSegment {
+  std::uint32_t end;
+  std::uint32_t begin;
+};
+
+/// Sums over int8 vectors, over bits and along lines, made for one kind of processor. Integers have
+/// no rounding: every variant gives the same numbers to the last bit. Memory may lie anywhere;
+/// nothing outside what is named is read. Alike in all: no allocation.
 ///
 /// Plain pointers, because a variant's file is compiled for its processor: an inline function of
 /// the C++ library compiled there could be linked in for all.
@@ -38,11 +45,24 @@ struct IntegerKernels {
   /// The dots of one vector with consecutive rows.
   /// @param query  [stride] -127 .. 127, zero beyond D
   /// @param rows   [count, stride] the same
-  /// @param stride bytes from row to row, a whole number of row_bytes, up to most_small_values
+  /// @param stride bytes from row to row, a whole number of stored_line, up to most_small_values
   /// @param dots   [count] written
   /// Work: count * stride MACs; reads the rows once, front to back.
   void (*dot_column)(const std::int8_t* query, const std::int8_t* rows, std::size_t stride,
                      std::size_t count, std::int32_t* dots) noexcept;
+
+  /// The same of several vectors, many times faster than one by one: what is read of a row is used
+  /// for up to eight of them. 16 to 64 queries at once are fastest where the rows lie outside the
+  /// second cache, for which some of them stay there while all queries pass by.
+  /// @param queries       [queries_count, stride] as above
+  /// @param queries_count any
+  /// @param dots          [queries_count, out_stride] written: dots[q * out_stride + r] is of query
+  ///                      q and row r; nothing behind the first `count` of each
+  /// @param out_stride    at least count
+  /// Work: queries_count * count * stride MACs; reads the rows once, some at a time.
+  void (*dot_block)(const std::int8_t* queries, std::size_t queries_count, const std::int8_t* rows,
+                    std::size_t stride, std::size_t count, std::int32_t* dots,
+                    std::size_t out_stride) noexcept;
 
   /// @param a, b [words]
   /// @return bits that differ. Work: words.
@@ -54,6 +74,19 @@ struct IntegerKernels {
   /// Work: count * words; reads the rows once, front to back.
   void (*hamming_column)(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
+
+  /// Keeps, for consecutive columns, the line with the lowest sum. Column j's sum is that of
+  /// prefix[end + j] - prefix[begin + j] over all segments, modulo 2^32: right where the true sum
+  /// fits 32 bits, even if what `prefix` adds up does not. Of equal sums, the earlier call's stays.
+  /// @param prefix   read at [offset, offset + count) for all offsets in `segments`
+  /// @param segments [segment_count]
+  /// @param line     the number of the line
+  /// @param best     [count] lowest sums so far, read and written
+  /// @param lines    [count] whose they are, read and written
+  /// Work: segment_count * count adds and subtractions.
+  void (*lowest_lines)(const std::uint32_t* prefix, const LineSegment* segments,
+                       std::size_t segment_count, std::size_t count, std::uint32_t line,
+                       std::uint32_t* best, std::uint32_t* lines) noexcept;
 };
 
 /// All variants that this library was built with, the best first, the one in plain C++ last. Not

@@ -11,8 +11,8 @@ namespace seqloop {
 /// The best row among a frame's candidates and how far it stands out.
 struct BestRow {
   std::size_t row;
-  float score;         ///< infinity never comes here
-  float uniqueness;    ///< score by the best score outside the row's window; NaN where not defined
+  double score;        ///< infinity never comes here
+  double uniqueness;   ///< score by the best score outside the row's window; NaN where not defined
   std::size_t scored;  ///< candidates that had a score
 };
 
@@ -23,17 +23,17 @@ class LoopDecision {
   explicit LoopDecision(std::size_t rwindow) noexcept : half_window_(rwindow / 2) {}
 
   /// @param scores [places], infinity for a row that no line fits
-  /// @param full_search whether the runs are all rows: their best rival stands in later, at frames
-  /// whose candidates have none
+  /// @param keep_rival whether this frame's best rival stands in later, at frames whose candidates
+  /// have none: D4 after a full search
   /// @return the row with the lowest score, the lower row of equals; none when no row has a score
   /// Work: two passes over the candidates. Allocates: never.
-  [[nodiscard]] std::optional<BestRow> decide(std::span<const float> scores,
+  [[nodiscard]] std::optional<BestRow> decide(std::span<const double> scores,
                                               std::span<const CandidateRun> runs,
-                                              bool full_search) noexcept;
+                                              bool keep_rival) noexcept;
 
  private:
   std::size_t half_window_;
-  std::optional<float> last_full_rival_;
+  std::optional<double> last_rival_;
 };
 
 }  // namespace seqloop

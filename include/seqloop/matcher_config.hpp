@@ -13,6 +13,14 @@ enum class Difference : std::uint8_t {
   mean_absolute  ///< between patch-normalised pictures (SeqSLAM)
 };
 
+/// In what form places are kept and compared.
+enum class Arithmetic : std::uint8_t {
+  float32,  ///< as they come, 4 bytes a value: to the paper's letter
+  int8,     ///< one byte a value; whole numbers from there on, so that answers are the same on
+            ///< every processor
+  sketch    ///< 2,048 bits a place, whatever the size of the descriptor
+};
+
 /// Which rows of the map a frame is compared with (ALGORITHMS: the methods).
 enum class Candidates : std::uint8_t {
   all,      ///< SeqCNNSLAM: every row
@@ -24,6 +32,28 @@ enum class Candidates : std::uint8_t {
 enum class Use : std::uint8_t {
   localise,    ///< an earlier drive that does not change
   close_loops  ///< the drive itself, without its last `exclude` frames
+};
+
+/// What becomes of a frame when the map, closing loops, is full.
+enum class FullMap : std::uint8_t {
+  refuse,         ///< it becomes no place
+  forget_oldest,  ///< it takes the oldest place's room
+  thin            ///< it takes the room of the place that differs least from those around it
+};
+
+/// How A- and O-SeqCNNSLAM find places that are outside their ranges, in place of the paper's full
+/// search.
+struct Relocalising {
+  bool operator==(const Relocalising&) const = default;
+
+  /// Off: full searches, as published. On: no frame costs more than any other.
+  bool on = true;
+  /// Rows of the map that a frame looks at, by sketches, one slice of the map after the other;
+  /// >= 1.
+  std::size_t slice = 4096;
+  /// The most descriptor distances that the candidates of a frame may cost; 0: `distances_a_frame`
+  /// chooses; otherwise at least what keeping up with one range takes.
+  std::size_t distances = 0;
 };
 
 /// How the features of a descriptor are weighed before they are compared.
@@ -43,6 +73,8 @@ struct Standardisation {
 struct MatcherConfig {
   Candidates candidates = Candidates::adaptive;
   Difference difference = Difference::euclidean;
+  /// What is not float32 wants Euclidean differences of at most 2^17 values.
+  Arithmetic arithmetic = Arithmetic::int8;
   Use use = Use::localise;
   std::size_t sequence_length =
       20;             ///< ds: a window holds ds + 1 columns; 0 .. 2,000 frames, 0: single frames
@@ -55,8 +87,11 @@ struct MatcherConfig {
   std::size_t k = 10;          ///< A-: number of ranges; 1 .. 1,000
   std::size_t initial_k = 30;  ///< O-: K0, where K starts and falls back to; 1 .. 1,000
   std::size_t num = 16;        ///< a range holds num + 1 rows; >= 1
-  std::size_t reinit = 450;    ///< L: every L-th matched frame searches all rows; >= 1
-  std::size_t exclude = 100;   ///< closing loops: newest frames that are no places; >= 1
+  /// L: every L-th matched frame searches all rows, where relocalising is off; >= 1
+  std::size_t reinit = 450;
+  Relocalising relocalising{};         ///< A- and O-: how places outside the ranges are found
+  std::size_t exclude = 100;           ///< closing loops: newest frames that are no places; >= 1
+  FullMap full_map = FullMap::refuse;  ///< closing loops: what a full map does
   Standardisation standardisation{};
   /// A blank descriptor (`blank()`: a covered lens, a black tunnel) counts as a frame that could
   /// not be read. Otherwise all such frames look alike, and match each other with top certainty.
@@ -71,6 +106,14 @@ struct Capacity {
   std::size_t places = 0;           ///< rows of the map; 1 .. 2^32
   std::size_t descriptor_size = 0;  ///< values in a descriptor, D; 1 .. 2^22
 };
+
+/// Whether frames have candidate ranges and a slice of the map to look at, and never all rows.
+[[nodiscard]] bool relocalises(const MatcherConfig& config) noexcept;
+
+/// The most descriptor distances that the candidates of one frame may cost where the detector
+/// relocalises: four times what keeping up with one range takes, or 256 if that is more, unless
+/// the configuration says.
+[[nodiscard]] std::size_t distances_a_frame(const MatcherConfig& config) noexcept;
 
 /// @return everything that is wrong with the configuration, with the flag's name first.
 [[nodiscard]] Faults validate(const MatcherConfig& config);

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "seqloop/arena.hpp"
+#include "seqloop/descriptor_rows.hpp"
 #include "seqloop/matcher_config.hpp"
+#include "seqloop/place_order.hpp"
 #include "seqloop/running_statistics.hpp"
 
 namespace seqloop {
@@ -14,51 +18,75 @@ namespace seqloop {
 /// them is taken at construction.
 class PlaceMap {
  public:
-  /// Bytes of every buffer. @param capacity as `validate` accepts it.
-  [[nodiscard]] static std::vector<BufferSize> plan(const Capacity& capacity);
-  [[nodiscard]] static std::size_t bytes_needed(const Capacity& capacity) {
-    return total_bytes(plan(capacity));
+  /// Bytes of every buffer. Errors: SetupError, all faults at once.
+  [[nodiscard]] static std::vector<BufferSize> plan(const MatcherConfig& config,
+                                                    const Capacity& capacity);
+  [[nodiscard]] static std::size_t bytes_needed(const MatcherConfig& config,
+                                                const Capacity& capacity) {
+    return total_bytes(plan(config, capacity));
   }
 
-  /// @param memory [bytes_needed(capacity)] aligned to Arena::alignment; empty: own memory
+  /// @param config what the detector will be given: it says in what form places are kept
+  /// @param memory [bytes_needed(config, capacity)] aligned to Arena::alignment; empty: own memory
   /// Errors: SetupError, all faults at once.
-  explicit PlaceMap(const Capacity& capacity, std::span<std::byte> memory = {});
+  PlaceMap(const MatcherConfig& config, const Capacity& capacity, std::span<std::byte> memory = {});
 
-  /// Appends a place.
-  /// @param descriptor [D]; without NaN or infinity
-  /// @return false when the map is full or standardised already, or the descriptor is of another
-  ///   size or not finite: then nothing has changed
+  /// Takes a place into the statistics by which all of them are standardised. A map to localise in
+  /// is shown its whole drive this way first, where the configuration standardises, then `add`s it.
+  /// @return false when there are places already, or the descriptor is of another size or not
+  ///   finite, or nothing is to be standardised: then nothing has changed
   /// Work: D. Allocates: never.
+  [[nodiscard]] bool learn(std::span<const float> descriptor) noexcept;
+
+  /// Appends a place; standardised, if the map has learnt.
+  /// @param descriptor [D]; without NaN or infinity
+  /// @return false when the map is full, or the descriptor is of another size or not finite: then
+  ///   nothing has changed
+  /// Work: 5 D. Allocates: never.
   [[nodiscard]] bool add(std::span<const float> descriptor) noexcept;
 
-  /// Takes the map's statistics and standardises every place by them, once all are there. Without
-  /// this call places are compared as they came. A second call does nothing.
-  /// Work: 5 N D. Allocates: never.
-  void standardise() noexcept;
+  /// What `take` did to the rows.
+  struct Taken {
+    std::optional<std::size_t> slot;     ///< where the place is now; none: refused
+    std::optional<std::size_t> removed;  ///< the row that went for it
+  };
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }  // N
-  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_.places; }
-  [[nodiscard]] std::size_t descriptor_size() const noexcept { return capacity_.descriptor_size; }
+  /// Appends what a detector compares its frames by; a full map does as `FullMap` says.
+  /// @param keep newest rows that do not go
+  /// Work: a copy; where places go, order is kept by moving 2 N bytes at most, and `thin` compares
+  /// two descriptors. Allocates: never.
+  Taken take(const DescriptorRows& queries, std::size_t query, std::size_t keep) noexcept;
 
-  /// @param row 0 .. size()
-  /// @return [padded_size(D)], zero beyond D
-  [[nodiscard]] std::span<const float> place(std::size_t row) const noexcept {
-    return places_.subspan(row * stride_, stride_);
-  }
+  [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }  // N
+  [[nodiscard]] std::size_t capacity() const noexcept { return order_.capacity(); }
+  [[nodiscard]] std::size_t descriptor_size() const noexcept { return rows_.form().size; }
 
-  /// Statistics of the drive that made the map; `frames() == 0` unless it was standardised.
+  /// Which row is in which slot of `rows()`.
+  [[nodiscard]] const PlaceOrder& order() const noexcept { return order_; }
+
+  /// The descriptors, by slot.
+  [[nodiscard]] const DescriptorRows& rows() const noexcept { return rows_; }
+
+  /// Statistics of the drive that made the map; `frames() == 0` unless it has learnt.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
  private:
-  PlaceMap(const Capacity& capacity, ArenaMemory&& memory);
-  PlaceMap(Arena arena, const Capacity& capacity, ArenaMemory&& memory);
+  PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory);
+  PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
+           ArenaMemory&& memory);
+
+  [[nodiscard]] bool fits(std::span<const float> descriptor) const noexcept;
+  [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
 
   ArenaMemory memory_;
-  Capacity capacity_;
-  std::size_t stride_;
-  std::size_t size_ = 0;
+  bool standardises_;
+  FullMap full_map_;
   RunningStatistics statistics_;
-  std::span<float> places_;  // [capacity, padded_size(D)]
+  PlaceOrder order_;
+  DescriptorRows rows_;
+  std::span<float> standardised_;  // [D]
+  std::size_t hand_ = 0;           // thinning goes round the rows from here
+  std::span<float> spacing_;       // [capacity] by slot: difference to the row before; for thinning
 };
 
 }  // namespace seqloop

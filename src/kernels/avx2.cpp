@@ -1,5 +1,5 @@
-#include "kernels/blocks.hpp"
 #include "kernels/highway.hpp"
+#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -10,11 +10,17 @@ std::uint32_t hamming_avx2(const std::uint64_t* a, const std::uint64_t* b,
 }
 
 void hamming_column_avx2(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
-                         std::size_t count, std::uint32_t* out) noexcept {
-  hamming_column<HighwayDifferences>(query, rows, words, count, out);
+                         std::size_t count, std::uint32_t* bits) noexcept {
+  hamming_column<HighwayDifferences>(query, rows, words, count, bits);
+}
+
+void lowest_lines_avx2(const std::uint32_t* prefix, const LineSegment* segments,
+                       std::size_t segment_count, std::size_t count, std::uint32_t line,
+                       std::uint32_t* best, std::uint32_t* lines) noexcept {
+  lowest_lines<HighwayLanes>(prefix, segments, segment_count, count, line, best, lines);
 }
 
 constinit const IntegerKernels avx2 =
-    made_of<HighwayProducts, HighwayDifferences>("avx2", &has_avx2);
+    made_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
 
 }  // namespace seqloop::kernels

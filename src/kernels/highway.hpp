@@ -16,64 +16,111 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-struct HighwayProducts {
-  using Vector = hn::Vec<hn::ScalableTag<std::int32_t>>;
-  struct Sum {
-    Vector low;
-    Vector high;  // some processors keep half of the sums here
-  };
-  static constexpr std::uint32_t row_offset = 0;
+/// Adds up the quarters, eighths or however many parts of four lanes a vector has.
+/// @param out [4]
+template <class Vector>
+void store_parts_of_four(Vector sums, std::uint32_t* out) noexcept {
+  const hn::DFromV<Vector> lanes;
+  if constexpr (hn::MaxLanes(lanes) > sums_together) {
+    const hn::Half<decltype(lanes)> half;
+    store_parts_of_four(hn::Add(hn::LowerHalf(half, sums), hn::UpperHalf(half, sums)), out);
+  } else {
+    hn::StoreU(sums, lanes, out);
+  }
+}
 
-  static Sum zero() noexcept {
-    const hn::ScalableTag<std::int32_t> wide;
-    return {hn::Zero(wide), hn::Zero(wide)};
+/// Lanes of a at even places, of b at odd ones, two of each added up.
+template <class Vector>
+Vector added_pairs(Vector a, Vector b) noexcept {
+  return hn::Add(hn::InterleaveLower(a, b), hn::InterleaveUpper(hn::DFromV<Vector>(), a, b));
+}
+
+struct HighwayProducts {
+  using Wide = hn::ScalableTag<std::int32_t>;
+  using Middle = hn::ScalableTag<std::int16_t>;
+  struct Sum {
+    hn::Vec<Wide> low;
+    hn::Vec<Wide> high;  // some processors keep half of the sums here
+  };
+  using Row = hn::Vec<Middle>;
+  using Query = hn::Vec<Middle>;
+  static constexpr std::size_t step = hn::MaxLanes(Middle());
+  static constexpr std::uint32_t row_offset = 0;
+  static constexpr std::size_t block_queries = 4;
+  static constexpr std::size_t column_rows = 4;
+
+  static Sum zero() noexcept { return {hn::Zero(Wide()), hn::Zero(Wide())}; }
+
+  static Row row(const std::int8_t* from) noexcept {
+    return hn::PromoteTo(Middle(), hn::LoadU(hn::Rebind<std::int8_t, Middle>(), from));
   }
 
-  static Sum add(Sum sum, const std::int8_t* row, const std::int8_t* query) noexcept {
-    const hn::ScalableTag<std::int32_t> wide;
-    const hn::ScalableTag<std::int16_t> middle;
-    const hn::Rebind<std::int8_t, decltype(middle)> narrow;
-    for (std::size_t i = 0; i < row_bytes; i += hn::Lanes(middle)) {
-      const auto a = hn::PromoteTo(middle, hn::LoadU(narrow, row + i));
-      const auto b = hn::PromoteTo(middle, hn::LoadU(narrow, query + i));
-      sum.low = hn::ReorderWidenMulAccumulate(wide, a, b, sum.low, sum.high);
-    }
+  static Query query(const std::int8_t* from) noexcept { return row(from); }
+
+  static Sum add(Sum sum, Row row, Query query) noexcept {
+    sum.low = hn::ReorderWidenMulAccumulate(Wide(), row, query, sum.low, sum.high);
     return sum;
   }
 
-  static std::uint32_t total(Sum sum) noexcept {
-    const hn::ScalableTag<std::int32_t> wide;
-    return static_cast<std::uint32_t>(
-        hn::GetLane(hn::SumOfLanes(wide, hn::Add(sum.low, sum.high))));
-  }
-
-  static void store_totals(const Sum (&sums)[rows_abreast], std::uint32_t /*too_much*/,
-                           std::int32_t* out) noexcept {
-    for (std::size_t row = 0; row < rows_abreast; ++row) {
-      out[row] = static_cast<std::int32_t>(total(sums[row]));
-    }
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    const hn::ScalableTag<std::uint32_t> lanes;
+    const hn::ScalableTag<std::uint64_t> pairs;
+    const auto both = [&](const Sum& sum) {
+      return hn::BitCast(lanes, hn::Add(sum.low, sum.high));
+    };
+    const auto first = added_pairs(both(sums[0]), both(sums[1]));
+    const auto last = added_pairs(both(sums[2]), both(sums[3]));
+    const auto a = hn::BitCast(pairs, first);
+    const auto b = hn::BitCast(pairs, last);
+    store_parts_of_four(hn::Add(hn::BitCast(lanes, hn::InterleaveLower(a, b)),
+                                hn::BitCast(lanes, hn::InterleaveUpper(pairs, a, b))),
+                        out);
   }
 };
 
 struct HighwayDifferences {
-  using Sum = hn::Vec<hn::ScalableTag<std::uint64_t>>;
+  using Words = hn::ScalableTag<std::uint64_t>;
+  using Sum = hn::Vec<Words>;
 
-  static Sum zero() noexcept { return hn::Zero(hn::ScalableTag<std::uint64_t>()); }
+  static Sum zero() noexcept { return hn::Zero(Words()); }
 
   static Sum add(Sum sum, const std::uint64_t* a, const std::uint64_t* b) noexcept {
-    const hn::ScalableTag<std::uint64_t> words;
     const hn::ScalableTag<std::uint8_t> bytes;
     auto bits = hn::Zero(bytes);
-    for (std::size_t i = 0; i < row_bytes / sizeof(std::uint64_t); i += hn::Lanes(words)) {
-      const auto differ = hn::Xor(hn::LoadU(words, a + i), hn::LoadU(words, b + i));
+    for (std::size_t i = 0; i < words_per_block; i += hn::MaxLanes(Words())) {
+      const auto differ = hn::Xor(hn::LoadU(Words(), a + i), hn::LoadU(Words(), b + i));
       bits = hn::Add(bits, hn::PopulationCount(hn::BitCast(bytes, differ)));
     }
     return hn::Add(sum, hn::SumsOf8(bits));
   }
 
-  static std::uint32_t total(Sum sum) noexcept {
-    const hn::ScalableTag<std::uint64_t> words;
-    return static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(words, sum)));
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    // Counts fit 32 bits: two go into 64.
+    const auto packed = [](Sum a, Sum b) { return hn::Or(a, hn::ShiftLeft<32>(b)); };
+    const hn::ScalableTag<std::uint32_t> lanes;
+    store_parts_of_four(
+        hn::BitCast(lanes, added_pairs(packed(sums[0], sums[1]), packed(sums[2], sums[3]))), out);
+  }
+};
+
+struct HighwayLanes {
+  using Tag = hn::ScalableTag<std::uint32_t>;
+  using Sum = hn::Vec<Tag>;
+  static constexpr std::size_t count = hn::MaxLanes(Tag());
+
+  static Sum zero() noexcept { return hn::Zero(Tag()); }
+
+  static Sum add_difference(Sum sum, const std::uint32_t* end,
+                            const std::uint32_t* begin) noexcept {
+    return hn::Add(sum, hn::Sub(hn::LoadU(Tag(), end), hn::LoadU(Tag(), begin)));
+  }
+
+  static void keep_lower(Sum sum, std::uint32_t line, std::uint32_t* best,
+                         std::uint32_t* lines) noexcept {
+    const auto before = hn::LoadU(Tag(), best);
+    const auto lower = hn::Lt(sum, before);
+    hn::StoreU(hn::IfThenElse(lower, sum, before), Tag(), best);
+    hn::StoreU(hn::IfThenElse(lower, hn::Set(Tag(), line), hn::LoadU(Tag(), lines)), Tag(), lines);
   }
 };
 

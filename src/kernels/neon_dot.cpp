@@ -1,46 +1,36 @@
 #include <arm_neon.h>
 
-#include "kernels/blocks.hpp"
+#include "kernels/dots.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
 namespace {
 
 struct Products {
-  struct Sum {
-    int32x4_t even;
-    int32x4_t odd;
-  };
+  using Sum = int32x4_t;
+  using Row = int8x16_t;
+  using Query = int8x16_t;
+  static constexpr std::size_t step = 16;
   static constexpr std::uint32_t row_offset = 0;
+  static constexpr std::size_t block_queries = 8;
+  static constexpr std::size_t column_rows = 8;
 
-  static Sum zero() noexcept { return {vdupq_n_s32(0), vdupq_n_s32(0)}; }
+  static Sum zero() noexcept { return vdupq_n_s32(0); }
+  static Row row(const std::int8_t* from) noexcept { return vld1q_s8(from); }
+  static Query query(const std::int8_t* from) noexcept { return vld1q_s8(from); }
+  static Sum add(Sum sum, Row row, Query query) noexcept { return vdotq_s32(sum, row, query); }
 
-  static Sum add(Sum sum, const std::int8_t* row, const std::int8_t* query) noexcept {
-    for (std::size_t i = 0; i < row_bytes; i += 32) {
-      sum.even = vdotq_s32(sum.even, vld1q_s8(row + i), vld1q_s8(query + i));
-      sum.odd = vdotq_s32(sum.odd, vld1q_s8(row + i + 16), vld1q_s8(query + i + 16));
-    }
-    return sum;
-  }
-
-  static int32x4_t four_lanes(Sum sum) noexcept { return vaddq_s32(sum.even, sum.odd); }
-
-  static std::uint32_t total(Sum sum) noexcept {
-    return static_cast<std::uint32_t>(vaddvq_s32(four_lanes(sum)));
-  }
-
-  static void store_totals(const Sum (&sums)[rows_abreast], std::uint32_t /*too_much*/,
-                           std::int32_t* out) noexcept {
-    const int32x4_t first = vpaddq_s32(four_lanes(sums[0]), four_lanes(sums[1]));
-    const int32x4_t last = vpaddq_s32(four_lanes(sums[2]), four_lanes(sums[3]));
-    vst1q_s32(out, vpaddq_s32(first, last));
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    const int32x4_t first = vpaddq_s32(sums[0], sums[1]);
+    const int32x4_t last = vpaddq_s32(sums[2], sums[3]);
+    vst1q_u32(out, vreinterpretq_u32_s32(vpaddq_s32(first, last)));
   }
 };
 
 }  // namespace
 
-constinit const IntegerKernels neon_dot{"neon-dot",     &has_neon_dot,
-                                        &dot<Products>, &dot_column<Products>,
-                                        &hamming_neon,  &hamming_column_neon};
+constinit const IntegerKernels neon_dot{
+    "neon-dot",           &has_neon_dot, &dot<Products>,       &dot_column<Products>,
+    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &lowest_lines_neon};
 
 }  // namespace seqloop::kernels

@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "kernels/blocks.hpp"
+#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -8,19 +8,24 @@ namespace {
 
 struct Products {
   using Sum = std::int32_t;
+  using Row = const std::int8_t*;
+  using Query = const std::int8_t*;
+  static constexpr std::size_t step = 64;
   static constexpr std::uint32_t row_offset = 0;
+  static constexpr std::size_t block_queries = 1;
+  static constexpr std::size_t column_rows = 1;
+
   static Sum zero() noexcept { return 0; }
-  static Sum add(Sum sum, const std::int8_t* row, const std::int8_t* query) noexcept {
-    for (std::size_t i = 0; i < row_bytes; ++i) sum += row[i] * query[i];
+  static Row row(const std::int8_t* from) noexcept { return from; }
+  static Query query(const std::int8_t* from) noexcept { return from; }
+
+  static Sum add(Sum sum, Row row, Query query) noexcept {
+    for (std::size_t i = 0; i < step; ++i) sum += row[i] * query[i];
     return sum;
   }
-  static std::uint32_t total(Sum sum) noexcept { return static_cast<std::uint32_t>(sum); }
 
-  static void store_totals(const Sum (&sums)[rows_abreast], std::uint32_t /*too_much*/,
-                           std::int32_t* out) noexcept {
-    for (std::size_t row = 0; row < rows_abreast; ++row) {
-      out[row] = static_cast<std::int32_t>(total(sums[row]));
-    }
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    for (std::size_t i = 0; i < sums_together; ++i) out[i] = static_cast<std::uint32_t>(sums[i]);
   }
 };
 
@@ -33,13 +38,16 @@ struct Differences {
     }
     return sum;
   }
-  static std::uint32_t total(Sum sum) noexcept { return sum; }
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    for (std::size_t i = 0; i < sums_together; ++i) out[i] = sums[i];
+  }
 };
 
 bool always() noexcept { return true; }
 
 }  // namespace
 
-constinit const IntegerKernels scalar = made_of<Products, Differences>("scalar", &always);
+constinit const IntegerKernels scalar =
+    made_of<Products, Differences, OneLane<Products>>("scalar", &always);
 
 }  // namespace seqloop::kernels

@@ -35,11 +35,16 @@ bool has_avx512_vnni() noexcept {
   return has_avx512() && __builtin_cpu_supports("avx512vnni") != 0;
 }
 
+bool has_avx512_popcnt() noexcept {
+  return has_avx512_vnni() && __builtin_cpu_supports("avx512vpopcntdq") != 0;
+}
+
 }  // namespace kernels
 
 std::span<const IntegerKernels* const> integer_kernels() noexcept {
-  static constexpr std::array variants{&kernels::avx512_vnni, &kernels::avx_vnni, &kernels::avx512,
-                                       &kernels::avx2,        &kernels::sse4,     &kernels::scalar};
+  static constexpr std::array variants{
+      &kernels::avx512_popcnt, &kernels::avx512_vnni, &kernels::avx_vnni, &kernels::avx512,
+      &kernels::avx2,          &kernels::sse4,        &kernels::scalar};
   return variants;
 }
 

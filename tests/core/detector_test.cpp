@@ -78,8 +78,10 @@ TEST(Detector, AFrameThatNeverCameIsOneThatCannotBeReadWithoutTheSearch) {
       config.rwindow = 10;
       config.standardisation.on = use == Use::close_loops;
       const oracle::Vectors drive = two_laps(4, 80, 12);
-      PlaceMap skipped_map = use == Use::localise ? map_of(drive) : PlaceMap({160, 12});
-      PlaceMap stepped_map = use == Use::localise ? map_of(drive) : PlaceMap({160, 12});
+      PlaceMap skipped_map =
+          use == Use::localise ? map_of(drive, config) : PlaceMap(config, {160, 12});
+      PlaceMap stepped_map =
+          use == Use::localise ? map_of(drive, config) : PlaceMap(config, {160, 12});
       Detector skipping(config, skipped_map);
       Detector stepping(config, stepped_map);
       const Work most = Detector::most_work(config, {160, 12});
@@ -104,7 +106,7 @@ TEST(Detector, AGapLongerThanTheWindowBeginsItAnew) {
   for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
     const MatcherConfig config = paper(candidates, 10);
     const oracle::Vectors reference = oracle::drive(7, 200, 16);
-    PlaceMap map = map_of(reference);
+    PlaceMap map = map_of(reference, config);
     Detector interrupted(config, map);
     for (std::size_t frame = 0; frame < 60; ++frame) {
       static_cast<void>(interrupted.step(reference[frame]));
@@ -130,7 +132,7 @@ TEST(Detector, FindsItsWayAfterAShortGapWithoutAFullSearch) {
   for (const Candidates candidates : {Candidates::ranges, Candidates::adaptive}) {
     const MatcherConfig config = paper(candidates, 20);
     const oracle::Vectors reference = oracle::drive(7, 300, 16);
-    PlaceMap map = map_of(reference);
+    PlaceMap map = map_of(reference, config);
     Detector detector(config, map);
     std::size_t frame = 0;
     for (; frame < 60; ++frame) static_cast<void>(detector.step(reference[frame]));
@@ -148,25 +150,25 @@ TEST(Detector, FindsItsWayAfterAShortGapWithoutAFullSearch) {
 }
 
 TEST(Detector, GapsOfNothingAndBeforeTheFirstFrameAreNone) {
-  PlaceMap map = map_of(oracle::drive(7, 30, 16));
+  const oracle::Vectors drive = oracle::drive(7, 30, 16);
+  PlaceMap map = map_of(drive, paper(Candidates::all, 4));
   Detector detector(paper(Candidates::all, 4), map);
   detector.skip(3);
-  EXPECT_EQ(detector.step(map.place(0).first(16)).newest, 0U);
+  EXPECT_EQ(detector.step(drive[0]).newest, 0U);
   detector.skip(0);
-  EXPECT_EQ(detector.step(map.place(1).first(16)).newest, 1U);
+  EXPECT_EQ(detector.step(drive[1]).newest, 1U);
   MatcherConfig single = paper(Candidates::all, 0);
   Detector frames(single, map);
-  static_cast<void>(frames.step(map.place(0).first(16)));
+  static_cast<void>(frames.step(drive[0]));
   frames.skip(2);
-  EXPECT_EQ(frames.step(map.place(9).first(16)).match->place, 9U);
+  EXPECT_EQ(frames.step(drive[9]).match->place, 9U);
 }
 
 TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
   const oracle::Vectors drive = oracle::drive(6, 200, 16, 0.1F);
-  PlaceMap map = map_of(drive);
-  map.standardise();
   MatcherConfig config;
   config.candidates = Candidates::all;
+  PlaceMap map = map_of(drive, config);
   Detector detector(config, map);
   std::size_t right = 0;
   for (std::size_t frame = 0; frame < 200; ++frame) {
@@ -195,9 +197,10 @@ TEST(Detector, RefusesAnEnhancementThatWouldNeedTheFuture) {
 TEST(Detector, PatchesNeedNotBeUnitButFiniteAndNotBlank) {
   MatcherConfig config;
   config.candidates = Candidates::all;
+  config.arithmetic = Arithmetic::float32;
   config.difference = Difference::mean_absolute;
   config.standardisation.on = false;
-  PlaceMap map = map_of(oracle::drive(6, 60, 16));
+  PlaceMap map = map_of(oracle::drive(6, 60, 16), config);
   Detector detector(config, map);
   EXPECT_EQ(detector.step(std::vector<float>(16, 127.5F)).gate, Gate::frame_error) << "blank";
   std::vector<float> patches(16, 127.5F);
@@ -233,7 +236,7 @@ TEST(Detector, SameInputSameReports) {
 
 TEST(Detector, LivesInMemoryThatTheCallerGives) {
   MatcherConfig config = paper(Candidates::all, 5);
-  PlaceMap map = map_of(oracle::drive(1, 30, 9));
+  PlaceMap map = map_of(oracle::drive(1, 30, 9), config);
   const std::size_t bytes = Detector::bytes_needed(config, {30, 9});
   const ArenaMemory memory(bytes, {});
   Detector detector(config, map, memory.span());
@@ -266,8 +269,7 @@ TEST(Detector, AFrameThatCannotBeReadDecidesNothingAndBreaksNothing) {
     for (const bool standardise : {false, true}) {
       MatcherConfig config = paper(Candidates::all, 10);
       config.standardisation.on = standardise;
-      PlaceMap map = map_of(drive);
-      if (standardise) map.standardise();
+      PlaceMap map = map_of(drive, config);
       Detector detector(config, map);
       for (std::size_t frame = 0; frame < 60; ++frame) {
         const bool bad = frame == 0 || frame == 30 || frame == 31;
@@ -287,7 +289,7 @@ TEST(Detector, ABlankFrameIsUnreadableUnlessThePaperIsFollowed) {
   for (const bool unreadable : {true, false}) {
     MatcherConfig config = paper(Candidates::all, 6);
     config.blank_is_unreadable = unreadable;
-    PlaceMap map = map_of(drive);
+    PlaceMap map = map_of(drive, config);
     Detector detector(config, map);
     (void)detector.step(drive[0]);
     const FrameReport report = detector.step(std::vector<float>(16, 0.0F));
@@ -299,7 +301,7 @@ TEST(Detector, SaysWhenTheMapIsFullAndKeepsAnswering) {
   const oracle::Vectors laps = two_laps(8, 150, 16);
   MatcherConfig config = paper(Candidates::all, 10, Use::close_loops);
   config.exclude = 20;
-  PlaceMap map({200, 16});
+  PlaceMap map(config, {200, 16});
   Detector detector(config, map);
   std::size_t right = 0;
   for (std::size_t frame = 0; frame < laps.size(); ++frame) {
@@ -318,7 +320,7 @@ TEST(Detector, ListsEveryFaultOfItsSetUp) {
   config.k = 0;
   config.num = 0;
   config.max_uniqueness = std::numeric_limits<float>::quiet_NaN();
-  PlaceMap map({3, 3});
+  PlaceMap map({}, {3, 3});
   try {
     const Detector detector(config, map);
     FAIL() << "must not be built";
@@ -331,14 +333,20 @@ TEST(Detector, ListsEveryFaultOfItsSetUp) {
 
 TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {
   MatcherConfig config = paper(Candidates::all, 5);
-  PlaceMap standardised = map_of(oracle::drive(1, 30, 9));
-  standardised.standardise();
+  const oracle::Vectors drive = oracle::drive(1, 30, 9);
+  PlaceMap raw = map_of(drive, config);
+  MatcherConfig other = config;
+  other.standardisation.on = true;
+  PlaceMap standardised = map_of(drive, other);
   EXPECT_THROW(Detector(config, standardised), SetupError);
-  PlaceMap raw = map_of(oracle::drive(1, 30, 9));
-  config.standardisation.on = true;
-  EXPECT_THROW(Detector(config, raw), SetupError);
-  config.use = Use::close_loops;
-  EXPECT_THROW(Detector(config, raw), SetupError);
+  EXPECT_THROW(Detector(other, raw), SetupError);
+  other.use = Use::close_loops;
+  EXPECT_THROW(Detector(other, raw), SetupError);
+  other = config;
+  other.arithmetic = Arithmetic::int8;
+  EXPECT_THROW(Detector(other, raw), SetupError);
+  PlaceMap empty(config, {3, 9});
+  EXPECT_THROW(Detector(config, empty), SetupError);
 }
 
 TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {

@@ -147,6 +147,67 @@ TEST_P(Variant, DotColumnEqualsTheDefinitionAtEveryAlignment) {
   }
 }
 
+TEST_P(Variant, DotBlockEqualsTheDefinitionForEveryShapeAndReadsNothingElse) {
+  std::mt19937 random(7);
+  for (const std::size_t size : {0U, 1U, 64U, 65U, 735U}) {
+    const std::size_t stride = padded_bytes(size);
+    for (std::size_t queries_count = 0; queries_count < 19; ++queries_count) {
+      for (const std::size_t count : {0U, 1U, 2U, 3U, 7U, 13U}) {
+        const Bytes queries = random_bytes(random, stride * queries_count);
+        const Bytes rows = random_bytes(random, stride * count);
+        const Guarded guarded_queries(queries);
+        const Guarded guarded_rows(rows);
+        const std::size_t out_stride = count + queries_count % 3;
+        std::vector<std::int32_t> dots(queries_count * out_stride + 1, 77);
+        kernels_.dot_block(guarded_queries.data(), queries_count, guarded_rows.data(), stride,
+                           count, dots.data(), out_stride);
+        for (std::size_t query = 0; query < queries_count; ++query) {
+          const std::int8_t* from = queries.data() + query * stride;
+          for (std::size_t row = 0; row < out_stride; ++row) {
+            const std::int32_t right =
+                row < count ? product(from, rows.data() + row * stride, stride) : 77;
+            ASSERT_EQ(dots[query * out_stride + row], right)
+                << size << ' ' << query << " of " << queries_count << ' ' << row << " of " << count;
+          }
+        }
+        EXPECT_EQ(dots.back(), 77) << "nothing is written behind";
+      }
+    }
+  }
+}
+
+TEST_P(Variant, DotBlockIsTheSameInParts) {
+  // So long that rows and queries are taken in parts, of which none is as long as another.
+  constexpr std::size_t stride = 70 * 1024 + 64;
+  constexpr std::size_t queries_count = 11;
+  constexpr std::size_t count = 9;
+  std::mt19937 random(8);
+  const Bytes queries = random_bytes(random, stride * queries_count + 64);
+  const Bytes rows = random_bytes(random, stride * count + 64);
+  for (const std::size_t offset : {0U, 1U, 63U}) {
+    const std::int8_t* from = queries.data() + offset;
+    const std::int8_t* to = rows.data() + (63 - offset);
+    std::vector<std::int32_t> dots(queries_count * count);
+    kernels_.dot_block(from, queries_count, to, stride, count, dots.data(), count);
+    for (std::size_t query = 0; query < queries_count; ++query) {
+      for (std::size_t row = 0; row < count; ++row) {
+        ASSERT_EQ(dots[query * count + row],
+                  product(from + query * stride, to + row * stride, stride))
+            << offset << ' ' << query << ' ' << row;
+      }
+    }
+  }
+}
+
+TEST_P(Variant, DotBlockHoldsTheLargestThatItPromises) {
+  const Bytes high(8 * most_small_values, 127);
+  const Bytes low(2 * most_small_values, -127);
+  constexpr std::int32_t most = 127 * 127 * std::int32_t{most_small_values};
+  std::vector<std::int32_t> dots(16);
+  kernels_.dot_block(high.data(), 8, low.data(), most_small_values, 2, dots.data(), 2);
+  EXPECT_EQ(dots, std::vector<std::int32_t>(16, -most));
+}
+
 TEST_P(Variant, HammingEqualsTheDefinitionForEverySizeAndReadsNothingElse) {
   std::mt19937_64 random(5);
   for (std::size_t words = 0; words < 70; ++words) {
@@ -191,6 +252,68 @@ TEST_P(Variant, HammingColumnEqualsTheDefinitionForEveryShapeAndReadsNothingElse
       }
       EXPECT_EQ(bits[count], 77U) << "nothing is written behind";
     }
+  }
+}
+
+/// What `lowest_lines` starts from and ends with.
+struct Lowest {
+  std::vector<std::uint32_t> best;
+  std::vector<std::uint32_t> lines;
+  bool operator==(const Lowest&) const = default;
+};
+
+void keep_lower(const std::vector<std::uint32_t>& prefix, const std::vector<LineSegment>& segments,
+                std::size_t count, std::uint32_t line, Lowest& lowest) {
+  for (std::size_t column = 0; column < count; ++column) {
+    std::uint32_t sum = 0;
+    for (const LineSegment segment : segments) {
+      sum += prefix[segment.end + column] - prefix[segment.begin + column];
+    }
+    if (sum >= lowest.best[column]) continue;
+    lowest.best[column] = sum;
+    lowest.lines[column] = line;
+  }
+}
+
+TEST_P(Variant, LowestLinesEqualTheDefinitionForEveryCountAndReadNothingElse) {
+  std::mt19937 random(9);
+  std::uniform_int_distribution<std::uint32_t> offsets(0, 40);
+  for (const std::size_t segment_count : {0U, 1U, 2U, 21U}) {
+    for (std::size_t count = 0; count < 150; ++count) {
+      // Sums that wrap around, and ties.
+      std::uniform_int_distribution<std::uint32_t> values(0, count % 2 == 0 ? 3U : 0xFFFFFFFFU);
+      std::vector<std::uint32_t> prefix(count + 40);
+      for (std::uint32_t& value : prefix) value = 0xFFFFFFFEU + values(random);
+      Lowest right{std::vector<std::uint32_t>(count + 1, 0xFFFFFFFFU),
+                   std::vector<std::uint32_t>(count + 1, 99)};
+      Lowest kept = right;
+      const Guarded guarded(prefix);
+      for (std::uint32_t line = 0; line < 3; ++line) {
+        std::vector<LineSegment> segments(segment_count);
+        for (LineSegment& segment : segments) segment = {offsets(random), offsets(random)};
+        if (segment_count > 0) segments.front().end = 40;
+        if (segment_count > 1) segments.back().begin = 40;
+        keep_lower(prefix, segments, count, line, right);
+        kernels_.lowest_lines(guarded.data(), segments.data(), segment_count, count, line,
+                              kept.best.data(), kept.lines.data());
+        ASSERT_EQ(kept, right) << segment_count << ' ' << count << ' ' << line;
+      }
+      EXPECT_EQ(kept.lines.back(), 99U) << "nothing is written behind";
+    }
+  }
+}
+
+TEST_P(Variant, LowestLinesCompareWithoutASign) {
+  for (const std::size_t count : {1U, 9U, 200U}) {
+    const std::vector<std::uint32_t> prefix(count + 1, 0);
+    std::vector<std::uint32_t> high(count, 0x80000001U);
+    std::vector<std::uint32_t> lines(count, 5);
+    const LineSegment nothing{1, 0};
+    kernels_.lowest_lines(prefix.data(), &nothing, 1, count, 6, high.data(), lines.data());
+    EXPECT_EQ(high, std::vector<std::uint32_t>(count, 0)) << count;
+    EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << count;
+    kernels_.lowest_lines(prefix.data(), &nothing, 1, count, 7, high.data(), lines.data());
+    EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << "of equal sums the first stays";
   }
 }
 

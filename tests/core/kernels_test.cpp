@@ -75,17 +75,19 @@ TEST(Contrast, EnhancesByHandAndIsNeverNegative) {
   EXPECT_EQ(contrast.reach(), 1U);
   const std::vector<float> column{1.0F, 2.0F, 6.0F, 6.0F, 6.0F};
   const double lift = 2.0 / std::sqrt(3.0);
-  EXPECT_NEAR(contrast.enhance(column, 1, 5), lift - 1.0 / std::sqrt(7.0), 1e-6);
-  EXPECT_NEAR(contrast.enhance(column, 0, 5), lift - std::sqrt(0.5), 1e-6) << "clipped to two rows";
-  EXPECT_NEAR(contrast.enhance(column, 3, 5), lift, 1e-6) << "nothing deviates";
-  EXPECT_NEAR(contrast.enhance(column, 2, 3), lift + std::sqrt(0.5), 1e-6) << "the map ends here";
-  EXPECT_NEAR(contrast.enhance(column, 0, 1), lift, 1e-6) << "a single row";
+  EXPECT_NEAR(contrast.enhance(column, 1, 1.0), lift - 1.0 / std::sqrt(7.0), 1e-6);
+  EXPECT_NEAR(contrast.enhance(column, 0, 1.0), lift - std::sqrt(0.5), 1e-6)
+      << "clipped to two rows";
+  EXPECT_NEAR(contrast.enhance(column, 3, 1.0), lift, 1e-6) << "nothing deviates";
+  EXPECT_NEAR(contrast.enhance(std::span(column).first(3), 2, 1.0), lift + std::sqrt(0.5), 1e-6)
+      << "the map ends here";
+  EXPECT_NEAR(contrast.enhance(std::span(column).first(1), 0, 1.0), lift, 1e-6) << "a single row";
   // The lowest that a sample can lie below its mean: one lower, all others equal.
   for (const std::size_t rwindow : {2U, 3U, 10U, 50U}) {
     const Contrast wide(rwindow);
     std::vector<float> dip(2 * wide.reach() + 1, 1.7F);
     dip[wide.reach()] = 0.1F;
-    const float lowest = wide.enhance(dip, wide.reach(), dip.size());
+    const float lowest = wide.enhance(dip, wide.reach(), 1.0);
     EXPECT_GE(lowest, 0.0F);
     EXPECT_NEAR(lowest, 0.0F, 1e-6);
   }
@@ -237,24 +239,31 @@ TEST(RunningStatistics, StartFlatFromAFirstFrame) {
 class Slices : public testing::Test {
  protected:
   static constexpr Capacity capacity{6, 20};
+  const MatcherConfig config_ = paper(Candidates::all, 2);
   oracle::Vectors drive_ = oracle::drive(21, 30, 20);
-  PlaceMap map_ = map_of({drive_.begin(), drive_.begin() + 6});
+  PlaceMap map_ = map_of({drive_.begin(), drive_.begin() + 6}, config_);
   TestArena memory_;
-  DifferenceSlices slices_{memory_.arena, {.sequence_length = 2}, 5, capacity};
+  DifferenceSlices slices_{memory_.arena, config_, 5, capacity};
 
-  void push(std::size_t frame) {
-    const std::span<float> query = slices_.push();
-    std::ranges::copy(drive_[frame], query.begin());
+  void push(std::size_t frame) { slices_.push(drive_[frame]); }
+
+  std::vector<float> column(const DifferenceSlices& slices, std::uint64_t frame) const {
+    std::vector<float> shown(6);
+    slices.show(map_, frame, shown);
+    return shown;
   }
 };
 
 TEST_F(Slices, ComputeADifferenceOnceAndOnlyWhereAsked) {
   push(0);
+  EXPECT_EQ(slices_.missing(map_, 0, 2, 4), 2U);
   EXPECT_EQ(slices_.fill(map_, 0, 2, 4), 2U);
-  EXPECT_LT(slices_.column(0)[1], 0.0F) << "not asked for";
+  EXPECT_LT(column(slices_, 0)[1], 0.0F) << "not asked for";
   EXPECT_EQ(slices_.fill(map_, 0, 2, 4), 0U);
+  EXPECT_EQ(slices_.missing(map_, 0, 0, 6), 4U);
   EXPECT_EQ(slices_.fill(map_, 0, 0, 6), 4U);
   EXPECT_EQ(slices_.fill(map_, 0, 0, 6), 0U);
+  EXPECT_EQ(slices_.missing(map_, 0, 0, 6), 0U);
   EXPECT_EQ(slices_.fill(map_, 0, 3, 3), 0U);
 }
 
@@ -264,71 +273,81 @@ TEST_F(Slices, HoldTheRightColumnAfterWrappingTwice) {
     for (std::uint64_t kept = frame < 2 ? 0 : frame - 2; kept <= frame; ++kept) {
       const bool fresh = kept == frame;
       EXPECT_EQ(slices_.fill(map_, kept, 0, 6), fresh ? 6U : 0U) << frame << ' ' << kept;
+      const std::vector<float> shown = column(slices_, kept);
       for (std::size_t row = 0; row < 6; ++row) {
         double sum = 0.0;
         for (std::size_t d = 0; d < 20; ++d) {
           sum += std::pow(
               static_cast<double>(drive_[kept][d]) - static_cast<double>(drive_[row][d]), 2.0);
         }
-        EXPECT_NEAR(slices_.column(kept)[row], std::sqrt(sum), 1e-6);
+        EXPECT_NEAR(shown[row], std::sqrt(sum), 1e-6);
       }
     }
   }
 }
 
 TEST_F(Slices, EnhancedOnesComputeTheRowsAroundOnce) {
-  TestArena memory;
-  DifferenceSlices enhanced(memory.arena, {.sequence_length = 2, .rwindow = 2, .enhance = true}, 5,
-                            capacity);
-  const std::span<float> query = enhanced.push();
-  std::ranges::copy(drive_[3], query.begin());
-  EXPECT_EQ(enhanced.fill(map_, 0, 3, 3), 0U);
-  EXPECT_EQ(enhanced.fill(map_, 0, 2, 4), 4U) << "one row on either side";
-  EXPECT_LT(enhanced.column(0)[1], 0.0F) << "not asked for";
-  EXPECT_EQ(enhanced.fill(map_, 0, 1, 5), 2U);
-  EXPECT_EQ(enhanced.fill(map_, 0, 0, 6), 0U) << "the ends are clipped to the map";
-  push(3);
-  slices_.fill(map_, 0, 0, 6);
-  for (std::size_t row = 0; row < 6; ++row) {
-    EXPECT_EQ(enhanced.column(0)[row], Contrast(2).enhance(slices_.column(0), row, 6));
+  for (const Arithmetic arithmetic : {Arithmetic::float32, Arithmetic::int8}) {
+    TestArena memory;
+    MatcherConfig config = config_;
+    config.arithmetic = arithmetic;
+    config.enhance = true;
+    config.rwindow = 2;
+    PlaceMap map = map_of({drive_.begin(), drive_.begin() + 6}, config);
+    DifferenceSlices enhanced(memory.arena, config, 5, capacity);
+    enhanced.push(drive_[3]);
+    EXPECT_EQ(enhanced.fill(map, 0, 3, 3), 0U);
+    EXPECT_EQ(enhanced.missing(map, 0, 2, 4), 4U);
+    EXPECT_EQ(enhanced.fill(map, 0, 2, 4), 4U) << "one row on either side";
+    EXPECT_LT(column(enhanced, 0)[1], 0.0F) << "not asked for";
+    EXPECT_EQ(enhanced.fill(map, 0, 1, 5), 2U);
+    EXPECT_EQ(enhanced.fill(map, 0, 0, 6), 0U) << "the ends are clipped to the map";
+    TestArena plain;
+    config.enhance = false;
+    DifferenceSlices differences(plain.arena, config, 5, capacity);
+    differences.push(drive_[3]);
+    differences.fill(map, 0, 0, 6);
+    const std::vector<float> column_of_3 = column(differences, 0);
+    for (std::size_t row = 0; row < 6; ++row) {
+      EXPECT_NEAR(column(enhanced, 0)[row], Contrast(2).enhance(column_of_3, row, 1.0), 1e-4);
+    }
   }
 }
 
 TEST(PlaceMap, SaysWhenItIsFullAndStaysAsItWas) {
-  PlaceMap map({2, 3});
+  PlaceMap map(paper(Candidates::all, 2), {2, 3});
   EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F, 0.0F}));
   EXPECT_TRUE(map.add(std::vector<float>{0.0F, 1.0F, 0.0F}));
   EXPECT_FALSE(map.add(std::vector<float>{0.0F, 0.0F, 1.0F}));
   EXPECT_EQ(map.size(), 2U);
-  EXPECT_EQ(map.place(1)[1], 1.0F);
-  EXPECT_EQ(map.place(1).size(), padded_size(3));
-  EXPECT_EQ(map.place(1)[15], 0.0F);
+  std::vector<float> kept(map.rows().restored_size());
+  map.rows().restore(1, kept);
+  EXPECT_EQ(kept.size(), padded_size(3));
+  EXPECT_EQ(kept[1], 1.0F);
+  EXPECT_EQ(kept[15], 0.0F);
 }
 
 TEST(PlaceMap, TakesOnlyWhatFits) {
-  PlaceMap map({3, 2});
+  PlaceMap map({}, {3, 2});
+  EXPECT_FALSE(map.learn(std::vector<float>(4000, 1.0F)));
+  EXPECT_TRUE(map.learn(std::vector<float>{1.0F, 0.0F}));
   EXPECT_FALSE(map.add(std::vector<float>(4000, 1.0F)));
   EXPECT_FALSE(map.add(std::vector<float>(1, 1.0F)));
   EXPECT_FALSE(map.add(std::vector<float>{1.0F, std::numeric_limits<float>::quiet_NaN()}));
   EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F}));
+  EXPECT_FALSE(map.learn(std::vector<float>{1.0F, 0.0F}))
+      << "places would not be standardised by it";
   EXPECT_TRUE(map.add(std::vector<float>{0.0F, 1.0F}));
-  map.standardise();
-  const float before = map.place(0)[0];
-  map.standardise();
-  EXPECT_EQ(map.place(0)[0], before);
-  EXPECT_FALSE(map.add(std::vector<float>{1.0F, 0.0F})) << "it would not be standardised";
 }
 
 TEST(ChangeDegree, EqualsEquationFourAndNamesItsEdges) {
   TestArena memory;
-  DifferenceSlices slices(memory.arena, {.sequence_length = 2}, 12, {1, 2});
+  DifferenceSlices slices(memory.arena, paper(Candidates::all, 2), 12, {1, 2});
   ChangeDegree degree;
   std::vector<std::vector<float>> frames;
   const auto see = [&](float a, float b) {
     frames.push_back({a, b});
-    const std::span<float> query = slices.push();
-    query[0] = a;
-    query[1] = b;
+    slices.push(frames.back());
     return degree.advance(slices, frames.size() - 1);
   };
   for (int frame = 0; frame < 11; ++frame) {
@@ -355,30 +374,34 @@ TEST(CandidateRanges, ClipUniteAndRankAsAlgorithmFourSays) {
   TestArena memory;
   MatcherConfig config;
   config.candidates = Candidates::ranges;
+  config.relocalising.on = false;
   config.k = 3;
   config.num = 4;
   CandidateRanges ranges(memory.arena, config);
+  CandidateRuns united(memory.arena, 3);
   const auto runs = [&](std::size_t rows) {
+    united.clear();
+    for (const CandidateRun range : ranges.choose(rows)) united.add(range);
     std::vector<std::pair<std::size_t, std::size_t>> all;
-    for (const CandidateRun run : ranges.choose(rows)) all.emplace_back(run.first, run.last);
+    for (const CandidateRun run : united.runs()) all.emplace_back(run.first, run.last);
     return all;
   };
   using Runs = std::vector<std::pair<std::size_t, std::size_t>>;
-  constexpr float none = std::numeric_limits<float>::infinity();
+  constexpr double none = std::numeric_limits<double>::infinity();
   EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "the first frame searches all";
-  std::vector<float> scores(20, none);
-  scores[0] = 0.3F;
-  scores[19] = 0.2F;
-  scores[10] = 0.1F;
-  scores[5] = 0.3F;  // as good as row 0, but higher
-  ranges.update(scores, 10, 1.0);
+  std::vector<double> scores(20, none);
+  scores[0] = 0.3;
+  scores[19] = 0.2;
+  scores[10] = 0.1;
+  scores[5] = 0.3;  // as good as row 0, but higher
+  ranges.update(scores, united.runs(), 10, 1.0);
   EXPECT_EQ(runs(20), (Runs{{0, 3}, {8, 13}, {17, 20}})) << "clipped at both ends";
   std::ranges::fill(scores, none);
-  scores[10] = 0.1F;
-  scores[12] = 0.2F;
-  ranges.update(scores, 10, 1.0);
+  scores[10] = 0.1;
+  scores[12] = 0.2;
+  ranges.update(scores, united.runs(), 10, 1.0);
   EXPECT_EQ(runs(20), (Runs{{8, 15}})) << "fewer rows than K, and they overlap";
-  ranges.update(scores, std::nullopt, 1.0);
+  ranges.update(scores, united.runs(), std::nullopt, 1.0);
   EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "after a frame without an answer";
   EXPECT_EQ(runs(0), Runs{}) << "an empty map";
 }

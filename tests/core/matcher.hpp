@@ -16,15 +16,18 @@ inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use:
   config.candidates = candidates;
   config.use = use;
   config.sequence_length = ds;
+  config.arithmetic = Arithmetic::float32;
+  config.relocalising.on = false;
   config.standardisation.on = false;
   config.blank_is_unreadable = false;
   config.max_uniqueness = 1.0F;
   return config;
 }
 
-/// A map that holds a whole drive as it came.
-inline PlaceMap map_of(const oracle::Vectors& places) {
-  PlaceMap map({places.size(), places.front().size()});
+/// A map that holds a whole drive: as it came, unless the configuration standardises.
+inline PlaceMap map_of(const oracle::Vectors& places, const MatcherConfig& config) {
+  PlaceMap map(config, {places.size(), places.front().size()});
+  for (const auto& place : places) static_cast<void>(map.learn(place));
   for (const auto& place : places) EXPECT_TRUE(map.add(place));
   return map;
 }
@@ -32,9 +35,8 @@ inline PlaceMap map_of(const oracle::Vectors& places) {
 /// Every report of a drive. @param reference empty: close loops within the query.
 inline std::vector<FrameReport> reports(const oracle::Vectors& reference,
                                         const oracle::Vectors& query, const MatcherConfig& config) {
-  PlaceMap map =
-      reference.empty() ? PlaceMap({query.size(), query.front().size()}) : map_of(reference);
-  if (config.standardisation.on && !reference.empty()) map.standardise();
+  PlaceMap map = reference.empty() ? PlaceMap(config, {query.size(), query.front().size()})
+                                   : map_of(reference, config);
   Detector detector(config, map);
   std::vector<FrameReport> all;
   for (const auto& descriptor : query) all.push_back(detector.step(descriptor));

@@ -24,11 +24,11 @@ TEST(Memory, ThePlanIsWhatTheProcessGrowsBy) {
   MatcherConfig config;
   config.sequence_length = 100;
   config.use = Use::close_loops;
-  const double planned = static_cast<double>(PlaceMap::bytes_needed(capacity) +
+  const double planned = static_cast<double>(PlaceMap::bytes_needed(config, capacity) +
                                              Detector::bytes_needed(config, capacity));
   const oracle::Vectors drive = oracle::drive(1, 300, 735);
   const double before = resident_bytes();
-  PlaceMap map(capacity);
+  PlaceMap map(config, capacity);
   Detector detector(config, map);
   const double built = resident_bytes() - before;
   for (const auto& descriptor : drive) (void)detector.step(descriptor);

@@ -37,6 +37,8 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
     for (const Use use : {Use::localise, Use::close_loops}) {
       for (const bool beyond : {false, true}) {  // SeqSLAM's comparison, standardised too
         MatcherConfig config;
+        config.arithmetic = beyond ? Arithmetic::float32 : Arithmetic::int8;
+        config.relocalising.on = !beyond;
         config.difference = beyond ? Difference::mean_absolute : Difference::euclidean;
         config.enhance = beyond;
         config.candidates = candidates;
@@ -44,8 +46,7 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
         config.exclude = 30;
         config.reinit = 20;
         config.standardisation.on = beyond;
-        PlaceMap map = use == Use::localise ? map_of(lap) : PlaceMap({200, 40});
-        if (use == Use::localise && beyond) map.standardise();
+        PlaceMap map = use == Use::localise ? map_of(lap, config) : PlaceMap(config, {200, 40});
         Detector detector(config, map);
         std::size_t matched = 0;
         const AllocationGuard guard;

@@ -61,7 +61,7 @@ TEST(Pipeline, TakesEveryFrameThroughEveryStage) {
   FakeSource source(30);
   FakeDescriber describer(drive);
   FakeClock clock;
-  PlaceMap map = map_of(drive);
+  PlaceMap map = map_of(drive, paper(Candidates::all, 6));
   Detector detector(paper(Candidates::all, 6), map);
   Pipeline pipeline(source, &describer, detector, clock, 16);
   std::size_t frames = 0;
@@ -109,7 +109,7 @@ TEST(Pipeline, CountsWhatNeverCameAndGoesOn) {
   LiveFake source(40);
   FakeDescriber describer(drive);
   FakeClock clock;
-  PlaceMap map = map_of(drive);
+  PlaceMap map = map_of(drive, paper(Candidates::all, 6));
   Detector detector(paper(Candidates::all, 6), map);
   Pipeline pipeline(source, &describer, detector, clock, 16);
   std::uint64_t frames = 0;

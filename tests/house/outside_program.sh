@@ -26,8 +26,9 @@ sed 's/find_package(seqloop REQUIRED)/find_package(seqloop REQUIRED COMPONENTS c
 cat >"$work/core/main.cpp" <<'EOF'
 #include <seqloop/detector.hpp>
 int main() {
-  seqloop::PlaceMap map({.places = 10, .descriptor_size = 2});
-  seqloop::Detector detector({.use = seqloop::Use::close_loops}, map);
+  const seqloop::MatcherConfig config{.use = seqloop::Use::close_loops};
+  seqloop::PlaceMap map(config, {.places = 10, .descriptor_size = 2});
+  seqloop::Detector detector(config, map);
   return detector.step(std::vector<float>{1.0F, 0.0F}).gate == seqloop::Gate::warming_up ? 0 : 1;
 }
 EOF

@@ -300,11 +300,16 @@ TEST_F(Run, EvalMeasuresByTheBook) {
 }
 
 TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
-  const auto outcome = expect_done("plan --max-places 1000 --descriptor-size 64 --ds 10");
-  EXPECT_NE(outcome.out.find("256000  map: places"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("11010  descriptor distances"), std::string::npos)
-      << "11 columns of 1,000, and 10 for the change degree: " << outcome.out;
-  EXPECT_NE(outcome.out.find("5000  line sums"), std::string::npos) << "velocities 0.8 .. 1.2";
+  const auto paper = expect_done("plan --paper --max-places 1000 --descriptor-size 64 --ds 10");
+  EXPECT_NE(paper.out.find("256000  map: places"), std::string::npos) << paper.out;
+  EXPECT_NE(paper.out.find("11010  descriptor distances"), std::string::npos)
+      << "11 columns of 1,000, and 10 for the change degree: " << paper.out;
+  EXPECT_NE(paper.out.find("5000  line sums"), std::string::npos) << "velocities 0.8 .. 1.2";
+  const auto plan = expect_done("plan --max-places 10000 --descriptor-size 64 --ds 10");
+  EXPECT_NE(plan.out.find("640000  map: places"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("266  descriptor distances"), std::string::npos) << plan.out;
+  EXPECT_NE(plan.out.find("255  line sums"), std::string::npos) << "51 rows, 5 velocities";
+  EXPECT_NE(plan.out.find("3  frames until the whole map"), std::string::npos) << plan.out;
 }
 
 TEST_F(Run, VersionAndHelpEverywhere) {

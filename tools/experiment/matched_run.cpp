@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include "experiment/matrix_recorder.hpp"
 #include "files/descriptor_source.hpp"
@@ -14,7 +15,7 @@ namespace seqloop::experiment {
 MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
                       evaluation::ThresholdOn threshold_on, bool with_matrix) {
   const files::Matrix& query = pair.query;
-  PlaceMap map({pair.reference ? pair.reference->rows : query.rows, query.columns});
+  PlaceMap map(config, {pair.reference ? pair.reference->rows : query.rows, query.columns});
   if (pair.reference) {
     files::DescriptorSource drive(std::move(*pair.reference));
     program::Progress silent;
@@ -22,6 +23,7 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
   }
   Detector detector(config, map);
   MatrixRecorder recorder(query.rows);
+  std::vector<float> column;
   MatchedRun run;
   std::uint64_t searched = 0;
   const bool by_score = threshold_on == evaluation::ThresholdOn::score;
@@ -32,7 +34,12 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
     run.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run.distances += static_cast<double>(report.work.distances);
     run.most_distances = std::max<std::uint64_t>(run.most_distances, report.work.distances);
-    if (with_matrix) recorder.add(detector.newest_column());
+    if (with_matrix) {
+      column.resize(map.size());
+      detector.newest_column(column);
+      column.resize(map.capacity(), -1.0F);
+      recorder.add(column);
+    }
     if (report.work.candidates > 0) ++searched;
     run.candidates += static_cast<double>(report.work.candidates);
     if (!report.match) continue;

@@ -99,7 +99,7 @@ void time_steps(const BenchSettings& settings, std::size_t places, std::vector<C
   refuse(std::move(faults));
 
   std::mt19937 random(1);
-  PlaceMap map(capacity);
+  PlaceMap map(config, capacity);
   while (map.add(random_unit(random, capacity.descriptor_size))) {
   }
   Detector detector(config, map);

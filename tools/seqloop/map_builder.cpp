@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <deque>
+#include <span>
 #include <vector>
 
 #include "files/descriptor_source.hpp"
@@ -20,7 +21,9 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
 void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
               Progress& progress) {
   std::vector<float> buffer(map.descriptor_size());
-  std::vector<float> last(map.descriptor_size(), 0.0F);
+  std::deque<std::vector<float>> described{std::vector<float>(map.descriptor_size(), 0.0F)};
+  std::vector<std::span<const float>> places;
+  std::span<const float> last = described.front();
   std::size_t readable = 0;
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
@@ -31,19 +34,25 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const Mat
     } else {
       ++readable;
       const bool left_out = config.blank_is_unreadable && blank(config.difference, descriptor);
-      if (!left_out) std::ranges::copy(descriptor, last.begin());
+      const bool stays = descriptor.data() == frame.descriptor.data();
+      if (!left_out && stays) last = descriptor;
+      if (!left_out && !stays) last = described.emplace_back(descriptor.begin(), descriptor.end());
     }
-    if (!map.add(last)) {
+    if (places.size() == map.capacity()) {
       throw SetupError({"max-places",
                         fmt::format("the reference has more frames than the map has room for, {}",
                                     map.capacity()),
                         "raise --max-places"});
     }
+    places.push_back(last);
     progress.step();
   }
   progress.done();
   if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
-  if (config.standardisation.on) map.standardise();
+  if (config.standardisation.on) {
+    for (const std::span<const float> place : places) static_cast<void>(map.learn(place));
+  }
+  for (const std::span<const float> place : places) static_cast<void>(map.add(place));
 }
 
 }  // namespace seqloop::program

@@ -75,7 +75,7 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   refuse(std::move(faults));
 
-  PlaceMap map({reference ? reference->rows : query->rows, query->columns});
+  PlaceMap map(config, {reference ? reference->rows : query->rows, query->columns});
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();

@@ -46,6 +46,20 @@ Difference parse_difference(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is neither euclidean nor mean-absolute");
 }
 
+Arithmetic parse_arithmetic(std::string_view text) {
+  if (text == "float") return Arithmetic::float32;
+  if (text == "int8") return Arithmetic::int8;
+  if (text == "sketch") return Arithmetic::sketch;
+  throw std::invalid_argument("'" + std::string(text) + "' is none of int8, float, sketch");
+}
+
+FullMap parse_full_map(std::string_view text) {
+  if (text == "refuse") return FullMap::refuse;
+  if (text == "forget-oldest") return FullMap::forget_oldest;
+  if (text == "thin") return FullMap::thin;
+  throw std::invalid_argument("'" + std::string(text) + "' is none of refuse, forget-oldest, thin");
+}
+
 }  // namespace
 
 void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
@@ -63,7 +77,8 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.count("rwindow", config.rwindow, "rows around the best that are no rivals [10]");
   options.count("k", config.k, "a-seqcnnslam: candidate ranges [10]");
   options.count("num", config.num, "a range holds this many rows and one [16]");
-  options.count("reinit", config.reinit, "matched frames from one full search to the next [450]");
+  options.count("reinit", config.reinit,
+                "without relocalising: matched frames from one full search to the next [450]");
   options.count("initial-k", config.initial_k, "o-seqcnnslam: ranges at first [30]");
   options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
   options.add(
@@ -83,7 +98,24 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.add({"enhance", ValueKind::on_off,
                "enhance differences by the contrast with the rows around [off; on for seqslam]",
                [&settings](std::string_view value) { settings.enhance = parse_on_off(value); }});
-  options.text("arithmetic", settings.arithmetic, "float [float]");
+  options.add(
+      {"arithmetic", ValueKind::text,
+       "int8: a byte a value; float; sketch: 256 bytes a place [int8; float under --paper, for "
+       "seqslam and mean-absolute]",
+       [&settings](std::string_view value) { settings.arithmetic = parse_arithmetic(value); }});
+  options.add({"relocalise", ValueKind::on_off,
+               "a- and o-seqcnnslam: look at a slice of the map at every frame, never search all "
+               "of it [on; "
+               "off under --paper]",
+               [&settings](std::string_view value) { settings.relocalise = parse_on_off(value); }});
+  options.count("slice", config.relocalising.slice,
+                "places of the map that a frame looks at to relocalise [4096]");
+  options.count("distances", config.relocalising.distances,
+                "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
+  options.add({"full-map", ValueKind::text,
+               "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
+               "where they are densest [refuse]",
+               [&config](std::string_view value) { config.full_map = parse_full_map(value); }});
 }
 
 std::vector<std::string> method_names() {
@@ -106,10 +138,9 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
   config.standardisation.on = settings.standardise.value_or(!settings.paper && !patches);
   config.blank_is_unreadable = !settings.paper;
   resolve_method(settings.method, config, faults);
-  if (settings.arithmetic != "float") {
-    faults.push_back({"arithmetic", "'" + settings.arithmetic + "' is not in this version",
-                      "--arithmetic float"});
-  }
+  config.arithmetic = settings.arithmetic.value_or(settings.paper || patches ? Arithmetic::float32
+                                                                             : Arithmetic::int8);
+  config.relocalising.on = settings.relocalise.value_or(!settings.paper);
   if (settings.method == "single") {
     config.sequence_length = 0;
     if (settings.ds_given)

@@ -18,7 +18,8 @@ struct MatcherSettings {
   std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says
   std::optional<bool> standardise;       ///< on unless --paper or SeqSLAM, when nobody says
   std::optional<bool> enhance;           ///< on for SeqSLAM alone, when nobody says
-  std::string arithmetic = "float";
+  std::optional<Arithmetic> arithmetic;  ///< float under --paper and for SeqSLAM, otherwise int8
+  std::optional<bool> relocalise;        ///< on unless --paper, when nobody says
 };
 
 /// @param settings lives as long as the table

@@ -99,11 +99,12 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   const std::size_t rows = std::min(map.size(), most_columns);
   const auto place_of = [&](std::size_t row) { return row * map.size() / rows; };
   cv::Mat differences(static_cast<int>(rows), static_cast<int>(queries_.size()), CV_32F);
+  std::vector<float> place(map.rows().restored_size());
   for (std::size_t row = 0; row < rows; ++row) {
+    map.rows().restore(map.order().slot(place_of(row)), place);
     for (std::size_t column = 0; column < queries_.size(); ++column) {
       differences.at<float>(static_cast<int>(rows - 1 - row), static_cast<int>(column)) =
-          difference(difference_, queries_[column], map.place(place_of(row)),
-                     map.descriptor_size());
+          difference(difference_, queries_[column], place, map.descriptor_size());
     }
   }
   cv::Mat plot;

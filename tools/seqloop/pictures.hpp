@@ -21,7 +21,7 @@ class PictureRecorder {
   /// @param difference what the matrix shows
   explicit PictureRecorder(Difference difference) noexcept : difference_(difference) {}
 
-  /// @param query what the detector compared, as `Detector::newest_query` gives it
+  /// @param query about what the detector compared, as `Detector::newest_query` gives it
   void add(const FrameReport& report, std::span<const float> query);
 
   /// Writes `difference_matrix.png`: places upwards, frames to the right, dark where they are

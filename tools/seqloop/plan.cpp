@@ -30,7 +30,7 @@ void plan(const PlanSettings& settings, Faults faults) {
   for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
   refuse(std::move(faults));
 
-  const std::vector<BufferSize> map = PlaceMap::plan(capacity);
+  const std::vector<BufferSize> map = PlaceMap::plan(config, capacity);
   const std::vector<BufferSize> detector = Detector::plan(config, capacity);
   const Work most = Detector::most_work(config, capacity);
   fmt::print("{}, ds {}, {} places of {} values, {}\n\n", settings.matcher.method,
@@ -44,8 +44,12 @@ void plan(const PlanSettings& settings, Faults faults) {
   fmt::print("            most  that one frame can cost\n");
   fmt::print("{:>16}  descriptor distances, {} values each\n", most.distances,
              capacity.descriptor_size);
-  fmt::print("{:>16}  line sums, {} differences each\n", most.line_sums,
+  fmt::print("{:>16}  line sums, of {} differences each\n", most.line_sums,
              config.sequence_length + 1);
+  if (!relocalises(config)) return;
+  fmt::print("{:>16}  pairs of sketches, 32 bytes each\n", most.sketches);
+  fmt::print("{:>16}  frames until the whole map was looked at\n",
+             (capacity.places + config.relocalising.slice - 1) / config.relocalising.slice);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "linux/real_time.hpp"
 #include "linux/steady_clock.hpp"
@@ -60,7 +61,7 @@ void run(const RunSettings& settings, Faults faults) {
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
   // Start-up: the map, then every path once, before the first frame counts.
-  PlaceMap map({setup.places, setup.descriptor_size});
+  PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
@@ -70,6 +71,7 @@ void run(const RunSettings& settings, Faults faults) {
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
   PictureRecorder recorder(setup.config.difference);
+  std::vector<float> query(map.rows().restored_size());
   Progress progress("running", setup.frame_count(settings.frames));
   TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
   become_real_time(settings.real_time);
@@ -87,7 +89,10 @@ void run(const RunSettings& settings, Faults faults) {
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
     std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
-    if (!settings.pictures.empty()) recorder.add(processed->report, detector.newest_query());
+    if (!settings.pictures.empty()) {
+      detector.newest_query(query);
+      recorder.add(processed->report, query);
+    }
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);

@@ -50,11 +50,11 @@ void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::
     normalise(descriptor);
     return std::span<const float>(descriptor);
   };
-  PlaceMap map({places, size});
+  PlaceMap map(config, {places, size});
   if (!closing) {
+    for (std::size_t place = 0; place < places; ++place) static_cast<void>(map.learn(next()));
     while (map.add(next())) {
     }
-    if (config.standardisation.on) map.standardise();
   }
   Detector detector(config, map);
   for (std::size_t frame = 0; frame < places; ++frame) {

@@ -92,13 +92,12 @@ class LiveAllocation : public testing::TestWithParam<Candidates> {
   /// @param greedy whether the describer misbehaves once, in the middle of the run
   static Found run(Candidates candidates, Use use, bool greedy) {
     const oracle::Vectors drive = oracle::drive(5, map_size, 16);
-    PlaceMap map = use == Use::localise ? map_of(drive) : PlaceMap({warm_up + frames, 16});
-    if (use == Use::localise) map.standardise();
     MatcherConfig config;
     config.candidates = candidates;
     config.use = use;
     config.sequence_length = 10;
-    config.reinit = 50;
+    PlaceMap map =
+        use == Use::localise ? map_of(drive, config) : PlaceMap(config, {warm_up + frames, 16});
     Detector detector(config, map);
     CameraView view;
     view.allowed = always;

@@ -124,11 +124,10 @@ class Soak : public testing::TestWithParam<Candidates> {};
 
 TEST_P(Soak, StaysFlatAndCountsToTheLastFrame) {
   const oracle::Vectors drive = oracle::drive(seed, 200, 16);
-  PlaceMap map = map_of(drive);
-  map.standardise();
   MatcherConfig config;
   config.candidates = GetParam();
   config.sequence_length = sequence_length;
+  PlaceMap map = map_of(drive, config);
   Detector detector(config, map);
   SteadyClock clock;
   CameraView view;

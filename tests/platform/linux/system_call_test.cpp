@@ -72,9 +72,7 @@ TEST_F(SystemCalls, NoStepOfTheDetectorMakesOne) {
       config.candidates = candidates;
       config.use = use;
       config.exclude = 30;
-      config.reinit = 20;
-      PlaceMap map = use == Use::localise ? map_of(lap) : PlaceMap({600, 40});
-      if (use == Use::localise) map.standardise();
+      PlaceMap map = use == Use::localise ? map_of(lap, config) : PlaceMap(config, {600, 40});
       Detector detector(config, map);
       EXPECT_EQ(status_without_system_calls([&] {
                   std::size_t matched = 0;

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "seqloop/arena.hpp"
+#include "seqloop/difference_slices.hpp"
+#include "seqloop/matcher_config.hpp"
+#include "seqloop/place_map.hpp"
+
+namespace seqloop {
+
+/// Keeps an eye on the whole map, so that a robot that has been carried elsewhere, or whose way
+/// joins an earlier one, is found again without ever searching all rows: each frame looks at one
+/// slice of the map, by sketches of a few of the newest frames, and remembers the rows that look
+/// most alike. What is remembered is looked at again at every frame, and moves along with the
+/// robot.
+class PromisingRows {
+ public:
+  /// How many are remembered.
+  static constexpr std::size_t most = 8;
+
+  /// Allocates: from the arena only.
+  PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places);
+
+  /// The most pairs of sketches that one call compares.
+  [[nodiscard]] static std::size_t most_sketches(const MatcherConfig& config,
+                                                 std::size_t places) noexcept;
+
+  /// Looks again at what is remembered, then at the next slice.
+  /// @param rows   rows of the map that may be searched
+  /// @param oldest the oldest frame that belongs together with the newest
+  /// @return pairs of sketches compared. Allocates: never.
+  std::size_t look(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+                   std::uint64_t oldest) noexcept;
+
+  /// A row that the newest frame may show.
+  struct Promise {
+    std::uint32_t bits;  ///< that differ, summed over the frames that were looked at
+    std::size_t row;
+  };
+
+  /// @return the most alike first
+  [[nodiscard]] std::span<const Promise> promises() const noexcept {
+    return promises_.first(count_);
+  }
+
+  /// Frames went by unseen: what is remembered is taken to lie so many rows further on.
+  void skip(std::uint64_t frames) noexcept;
+
+  /// A row went from the map: those behind it are counted one lower.
+  void removed(std::size_t row) noexcept;
+
+  /// Forgets everything.
+  void restart() noexcept { count_ = 0; }
+
+ private:
+  [[nodiscard]] std::span<const Promise> best_of_slice(const DifferenceSlices& slices,
+                                                       const PlaceMap& map,
+                                                       std::size_t rows) noexcept;
+  void look_closely(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+                    std::size_t row) noexcept;
+  void compare(const DifferenceSlices& slices, const PlaceMap& map, std::size_t back,
+               std::size_t first, std::span<std::uint32_t> bits) noexcept;
+  void remember(Promise promise) noexcept;
+
+  std::size_t slice_;
+  std::size_t near_;        // rows within which there is one promise
+  std::size_t next_ = 0;    // row that the next slice begins at
+  std::size_t frames_ = 0;  // newest frames that are looked at now
+  std::size_t sketches_ = 0;
+  std::size_t count_ = 0;
+  std::span<Promise> promises_;    // [most + 1], best first
+  std::span<Promise> best_;        // of the slice, best first
+  std::span<std::uint32_t> bits_;  // [slice] of the newest frame
+};
+
+}  // namespace seqloop

@@ -1,0 +1,91 @@
+#include "seqloop/admitted_rows.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "seqloop/promising_rows.hpp"
+
+namespace seqloop {
+namespace {
+
+constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+
+/// Ranges that a frame can have.
+std::size_t most_runs(const MatcherConfig& config) {
+  if (config.candidates == Candidates::all) return 1;
+  const std::size_t k = config.candidates == Candidates::adaptive ? config.initial_k : config.k;
+  return k + (relocalises(config) ? PromisingRows::most : 0);
+}
+
+/// Visits the cells that lines through the run can touch: visit(frame, first row, last row).
+template <class Visit>
+void for_each_column(const AdmittedRows::Window& window, CandidateRun run, Visit visit) {
+  const Trajectories& lines = *window.trajectories;
+  const auto first_row = static_cast<std::int64_t>(run.first);
+  const auto last_row = static_cast<std::int64_t>(run.last);
+  for (std::size_t i = 0; i < lines.window(); ++i) {
+    // In a window that is not full yet, the first frames are still missing.
+    if (window.end + i < window.first + lines.window()) continue;
+    const auto first = std::max<std::int64_t>(first_row + lines.lowest(i), 0);
+    const auto last = std::min(last_row + lines.highest(i), static_cast<std::int64_t>(window.rows));
+    if (first >= last) continue;
+    visit(window.end + i - lines.window(), static_cast<std::size_t>(first),
+          static_cast<std::size_t>(last));
+  }
+}
+
+}  // namespace
+
+AdmittedRows::AdmittedRows(Arena& arena, const MatcherConfig& config)
+    : limited_(relocalises(config)),
+      most_rows_(limited_ ? most_rows(config) : any),
+      most_distances_(limited_ ? distances_a_frame(config) : any),
+      runs_(arena, most_runs(config)) {}
+
+void AdmittedRows::clear() noexcept {
+  runs_.clear();
+  rows_ = 0;
+  distances_ = 0;
+}
+
+void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
+  for (;;) {
+    const Cost more = limited_ ? cost(window, range) : Cost{1, 0};
+    if (more.rows == 0) return;
+    const bool fits =
+        rows_ + more.rows <= most_rows_ && distances_ + more.distances <= most_distances_;
+    const std::size_t length = range.last - range.first;
+    if (fits || length == 1) {
+      compute(window, range);
+      if (!fits) return;
+      rows_ += more.rows;
+      runs_.add(range);
+      return;
+    }
+    const std::size_t quarter = std::max<std::size_t>(length / 4, 1);
+    range = {range.first + quarter, range.last - (length > 2 ? quarter : 0)};
+  }
+}
+
+AdmittedRows::Cost AdmittedRows::cost(const Window& window, CandidateRun range) const noexcept {
+  Cost sum;
+  runs_.for_each_outside(range, [&](CandidateRun part) {
+    sum.rows += part.last - part.first;
+    for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
+      sum.distances += window.slices->missing(*window.map, frame, first, last);
+    });
+  });
+  return sum;
+}
+
+void AdmittedRows::compute(const Window& window, CandidateRun range) noexcept {
+  runs_.for_each_outside(range, [&](CandidateRun part) {
+    for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
+      const std::size_t left = most_distances_ - distances_;
+      distances_ +=
+          window.slices->fill(*window.map, frame, first, std::min(last - first, left) + first);
+    });
+  });
+}
+
+}  // namespace seqloop

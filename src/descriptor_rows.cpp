@@ -1,0 +1,175 @@
+#include "seqloop/descriptor_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "seqloop/difference.hpp"
+#include "seqloop/fixed_distance.hpp"
+#include "seqloop/quantised.hpp"
+#include "seqloop/sketch.hpp"
+
+namespace seqloop {
+namespace {
+
+// Whole numbers on their way to differences: few enough for the first-level cache.
+constexpr std::size_t abreast = 256;
+
+constexpr std::size_t rest_words = sketch_words - DescriptorRows::first_words;
+constexpr double sketch_bits = 64.0 * static_cast<double>(sketch_words);
+
+std::size_t stride_of(const DescriptorForm& form) {
+  return form.arithmetic == Arithmetic::float32 ? padded_size(form.size) : padded_bytes(form.size);
+}
+
+/// Calls `work(begin, count)` for pieces of at most `abreast`.
+template <class Work>
+void in_pieces(std::size_t count, Work work) {
+  for (std::size_t begin = 0; begin < count; begin += abreast) {
+    work(begin, std::min(abreast, count - begin));
+  }
+}
+
+}  // namespace
+
+DescriptorForm::DescriptorForm(const MatcherConfig& config, std::size_t descriptor_size) noexcept
+    : difference(config.difference),
+      arithmetic(config.arithmetic),
+      sketches(config.arithmetic == Arithmetic::sketch || relocalises(config)),
+      size(descriptor_size) {}
+
+double DescriptorForm::unit() const noexcept {
+  // All bits of a sketch are as far apart as opposite vectors.
+  return arithmetic == Arithmetic::sketch ? sketch_bits / 2.0 : fixed_distance_one;
+}
+
+DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const DescriptorForm& form,
+                               std::size_t rows)
+    : form_(form),
+      kernels_(&best_integer_kernels()),
+      stride_(stride_of(form)),
+      exact_(arena.take<float>(names.values,
+                               form.arithmetic == Arithmetic::float32 ? rows * stride_ : 0)),
+      small_(arena.take<std::int8_t>(names.values,
+                                     form.arithmetic == Arithmetic::int8 ? rows * stride_ : 0)),
+      inverse_lengths_(
+          arena.take<double>(names.lengths, form.arithmetic == Arithmetic::int8 ? rows : 0)),
+      quantised_(arena.take<std::int8_t>(
+          "what a sketch is made of",
+          form.sketches && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
+      first_(arena.take<std::uint64_t>(names.sketches, form.sketches ? rows * first_words : 0)),
+      rest_(arena.take<std::uint64_t>(
+          names.sketches, form.arithmetic == Arithmetic::sketch ? rows * rest_words : 0)) {}
+
+void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) noexcept {
+  if (form_.arithmetic == Arithmetic::float32) {
+    std::ranges::copy(descriptor, exact_.subspan(row * stride_, stride_).begin());
+  }
+  std::span<std::int8_t> bytes = quantised_;
+  if (form_.arithmetic == Arithmetic::int8) {
+    bytes = small(row);
+    inverse_lengths_[row] = inverse_length(quantise(descriptor, bytes).squared_norm);
+  } else if (form_.sketches) {
+    quantise(descriptor, bytes);
+  }
+  if (!form_.sketches) return;
+  std::array<std::uint64_t, sketch_words> words;
+  const bool whole = form_.arithmetic == Arithmetic::sketch;
+  const std::span<std::uint64_t> made = std::span(words).first(whole ? sketch_words : first_words);
+  sketch(bytes.first(form_.size), made);
+  std::ranges::copy(made.first(first_words), first_.subspan(row * first_words).begin());
+  if (whole) {
+    std::ranges::copy(made.subspan(first_words), rest_.subspan(row * rest_words).begin());
+  }
+}
+
+void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,
+                          std::size_t from_row) noexcept {
+  const auto copy_row = [&](auto to, auto source, std::size_t size) {
+    if (to.empty()) return;
+    std::ranges::copy(source.subspan(from_row * size, size), to.subspan(row * size).begin());
+  };
+  copy_row(exact_, from.exact_, stride_);
+  copy_row(small_, from.small_, stride_);
+  copy_row(inverse_lengths_, from.inverse_lengths_, 1);
+  copy_row(first_, from.first_, first_words);
+  copy_row(rest_, from.rest_, rest_words);
+}
+
+void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
+                             std::span<float> out) const noexcept {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = difference(form_.difference, queries.exact(query), exact(first + i), form_.size);
+  }
+}
+
+void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
+                             std::span<std::uint16_t> out) const noexcept {
+  if (form_.arithmetic == Arithmetic::sketch) {
+    std::array<std::uint32_t, abreast> bits;
+    std::array<std::uint32_t, abreast> more;
+    in_pieces(out.size(), [&](std::size_t begin, std::size_t count) {
+      const std::size_t row = first + begin;
+      kernels_->hamming_column(&queries.first_[query * first_words], &first_[row * first_words],
+                               first_words, count, bits.data());
+      kernels_->hamming_column(&queries.rest_[query * rest_words], &rest_[row * rest_words],
+                               rest_words, count, more.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        out[begin + i] = static_cast<std::uint16_t>(bits[i] + more[i]);
+      }
+    });
+    return;
+  }
+  std::array<std::int32_t, abreast> dots;
+  in_pieces(out.size(), [&](std::size_t begin, std::size_t count) {
+    const std::size_t row = first + begin;
+    kernels_->dot_column(queries.small(query).data(), small(row).data(), stride_, count,
+                         dots.data());
+    fixed_distances(std::span(dots).first(count), queries.inverse_lengths_[query],
+                    inverse_lengths_.subspan(row, count), out.subspan(begin, count));
+  });
+}
+
+double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
+  if (form_.arithmetic == Arithmetic::float32) {
+    return static_cast<double>(difference(form_.difference, exact(a), exact(b), form_.size));
+  }
+  std::uint16_t difference = 0;
+  compare(*this, a, b, std::span(&difference, 1));
+  return difference / form_.unit();
+}
+
+void DescriptorRows::compare_first_words(const DescriptorRows& queries, std::size_t query,
+                                         std::size_t first,
+                                         std::span<std::uint32_t> out) const noexcept {
+  kernels_->hamming_column(&queries.first_[query * first_words], &first_[first * first_words],
+                           first_words, out.size(), out.data());
+}
+
+void DescriptorRows::restore(std::size_t row, std::span<float> out) const noexcept {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    switch (form_.arithmetic) {
+      case Arithmetic::float32:
+        out[i] = exact(row)[i];
+        break;
+      case Arithmetic::int8:
+        out[i] = static_cast<float>(small(row)[i] * inverse_lengths_[row]);
+        break;
+      case Arithmetic::sketch: {
+        const std::size_t word = i / 64;
+        const std::uint64_t bits = word < first_words
+                                       ? first_[row * first_words + word]
+                                       : rest_[row * rest_words + word - first_words];
+        const auto length = static_cast<float>(1.0 / std::sqrt(sketch_bits));
+        out[i] = ((bits >> (i % 64)) & 1U) != 0 ? length : -length;
+        break;
+      }
+    }
+  }
+}
+
+std::size_t DescriptorRows::restored_size() const noexcept {
+  return form_.arithmetic == Arithmetic::sketch ? 64 * sketch_words : padded_size(form_.size);
+}
+
+}  // namespace seqloop

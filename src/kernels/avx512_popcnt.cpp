@@ -1,0 +1,44 @@
+#include <immintrin.h>
+
+#include "kernels/dots.hpp"
+#include "kernels/hamming.hpp"
+#include "kernels/variants.hpp"
+#include "kernels/vnni512.hpp"
+
+namespace seqloop::kernels {
+namespace {
+
+/// vpopcntq counts a block's bits at once.
+struct Differences {
+  struct Sum {
+    __m512i lanes;
+  };
+
+  static Sum zero() noexcept { return {_mm512_setzero_si512()}; }
+
+  static Sum add(Sum sum, const std::uint64_t* a, const std::uint64_t* b) noexcept {
+    const __m512i differ = _mm512_xor_si512(_mm512_loadu_si512(a), _mm512_loadu_si512(b));
+    return {_mm512_add_epi64(sum.lanes, _mm512_popcnt_epi64(differ))};
+  }
+
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    store_quarters(
+        added_pairs(packed(sums[0].lanes, sums[1].lanes), packed(sums[2].lanes, sums[3].lanes)),
+        out);
+  }
+
+ private:
+  /// Counts fit 32 bits: those of b go where a has zeros.
+  static __m512i packed(__m512i a, __m512i b) noexcept {
+    return _mm512_or_si512(a, _mm512_maskz_slli_epi64(all_lanes, b, 32));
+  }
+};
+
+}  // namespace
+
+constinit const IntegerKernels avx512_popcnt{
+    "avx512-vnni-popcnt",         &has_avx512_popcnt,          &dot<Vnni512Products>,
+    &dot_column<Vnni512Products>, &dot_block<Vnni512Products>, &hamming<Differences>,
+    &hamming_column<Differences>, &lowest_lines_avx512};
+
+}  // namespace seqloop::kernels

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "kernels/blocks.hpp"
+
+// Differences: struct {
+//   Sum: a register; Sum zero(); Sum add(Sum, a, b): bits that differ in one block
+//   totals(sums of sums_together, out) }
+namespace seqloop::kernels {
+
+/// The distances of one sketch to some that lie side by side.
+/// @param bits [rows] written
+template <class Differences, std::size_t rows>
+void distances_abreast(const std::uint64_t* query, const std::uint64_t* row, std::size_t words,
+                       std::uint32_t* bits) noexcept {
+  typename Differences::Sum sums[sums_together];
+  for (auto& sum : sums) sum = Differences::zero();
+  std::size_t first = 0;
+  for (; first + words_per_block <= words; first += words_per_block) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      sums[r] = Differences::add(sums[r], row + r * words + first, query + first);
+    }
+  }
+  if (first < words) {
+    const LastBlock<Differences, std::uint64_t> last_query(query + first, words - first);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const LastBlock<Differences, std::uint64_t> last_row(row + r * words + first, words - first);
+      sums[r] = Differences::add(sums[r], last_row.values, last_query.values);
+    }
+  }
+  std::uint32_t totals[sums_together];
+  Differences::totals(sums, totals);
+  for (std::size_t r = 0; r < rows; ++r) bits[r] = totals[r];
+}
+
+template <class Differences>
+std::uint32_t hamming(const std::uint64_t* a, const std::uint64_t* b, std::size_t words) noexcept {
+  std::uint32_t bits;
+  distances_abreast<Differences, 1>(a, b, words, &bits);
+  return bits;
+}
+
+template <class Differences>
+void hamming_column(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
+                    std::size_t count, std::uint32_t* bits) noexcept {
+  std::size_t row = 0;
+  for (; row + sums_together <= count; row += sums_together) {
+    distances_abreast<Differences, sums_together>(query, rows + row * words, words, bits + row);
+  }
+  for (; row < count; ++row) {
+    distances_abreast<Differences, 1>(query, rows + row * words, words, bits + row);
+  }
+}
+
+}  // namespace seqloop::kernels

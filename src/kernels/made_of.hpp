@@ -1,0 +1,22 @@
+#pragma once
+
+#include "kernels/dots.hpp"
+#include "kernels/hamming.hpp"
+#include "kernels/lowest_lines.hpp"
+
+namespace seqloop::kernels {
+
+/// A variant that has all of its own.
+template <class Products, class Differences, class Lanes>
+constexpr IntegerKernels made_of(std::string_view name, bool (*supported)() noexcept) noexcept {
+  return {name,
+          supported,
+          &dot<Products>,
+          &dot_column<Products>,
+          &dot_block<Products>,
+          &hamming<Differences>,
+          &hamming_column<Differences>,
+          &lowest_lines<Lanes>};
+}
+
+}  // namespace seqloop::kernels
