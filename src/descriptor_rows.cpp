@@ -130,6 +130,20 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
   });
 }
 
+void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
+                             std::span<const std::span<std::uint16_t>> out) const noexcept {
+  std::array<std::int32_t, most_at_once * abreast> dots;
+  in_pieces(out.front().size(), [&](std::size_t begin, std::size_t count) {
+    kernels_->dot_block(queries.small(query).data(), out.size(), small(begin).data(), stride_,
+                        count, dots.data(), abreast);
+    for (std::size_t q = 0; q < out.size(); ++q) {
+      fixed_distances(std::span(dots).subspan(q * abreast, count),
+                      queries.inverse_lengths_[query + q], inverse_lengths_.subspan(begin, count),
+                      out[q].subspan(begin, count));
+    }
+  });
+}
+
 double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
     return static_cast<double>(difference(form_.difference, exact(a), exact(b), form_.size));

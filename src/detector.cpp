@@ -1,6 +1,7 @@
 #include "seqloop/detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -42,7 +43,7 @@ Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descript
 /// looks back on.
 std::size_t history(const MatcherConfig& config) {
   const std::size_t ds = config.sequence_length;
-  return std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
+  return std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1) + config.frames_at_once - 1;
 }
 
 /// Whether a descriptor is what its difference wants: finite, and for Euclid of unit length
@@ -118,14 +119,39 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
+  const std::uint64_t newest = slices_.frames();
+  const bool readable = take_query(descriptor);
+  const bool became_place = config_.use == Use::localise || become_place();
+  FrameReport report = answer(newest, readable);
+  report.map_full = !became_place;
+  return report;
+}
+
+void Detector::steps(std::span<const std::span<const float>> descriptors,
+                     std::span<FrameReport> reports) noexcept {
+  const bool at_once = config_.candidates == Candidates::all && config_.use == Use::localise &&
+                       config_.arithmetic == Arithmetic::int8 && !config_.enhance;
+  if (!at_once) {
+    for (std::size_t i = 0; i < descriptors.size(); ++i) reports[i] = step(descriptors[i]);
+    return;
+  }
+  const std::uint64_t first = slices_.frames();
+  std::array<bool, DescriptorRows::most_at_once> readable;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) readable[i] = take_query(descriptors[i]);
+  slices_.fill_newest(*map_, descriptors.size());
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    reports[i] = answer(first + i, readable[i]);
+    reports[i].work.distances += map_->size();
+  }
+}
+
+/// Matches the centre frame of a window whose newest frame has been taken.
+FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   FrameReport report;
-  report.newest = slices_.frames();
+  report.newest = newest;
   report.k = ranges_.k();
   const std::size_t after_centre = config_.sequence_length - trajectories_.centre();
-
-  const bool readable = take_query(descriptor);
-  if (config_.use == Use::close_loops) report.map_full = !become_place();
-  report.work.distances = fill_columns();
+  report.work.distances = fill_columns(newest);
   const std::size_t rows =
       rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
   if (relocalises(config_)) {
@@ -136,7 +162,7 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   const bool whole = report.newest >= window_began_ + config_.sequence_length;
   if (!whole && !relocalises(config_)) return report;
 
-  report.full_search = admit_candidates(rows);
+  report.full_search = admit_candidates(newest, rows);
   report.work.distances += admitted_.distances();
   if (!whole) return report;
   for (const CandidateRun run : admitted_.runs()) {
@@ -239,9 +265,8 @@ std::size_t Detector::complete_rows() const noexcept {
 /// Where all rows are candidates, every difference that a frame can be asked for while it is in the
 /// window will be: computing them as it arrives spreads the work evenly. Where loops are closed
 /// onto the window itself, a column grows by the place that has just been added.
-std::size_t Detector::fill_columns() noexcept {
+std::size_t Detector::fill_columns(std::uint64_t newest) noexcept {
   if (config_.candidates != Candidates::all) return 0;
-  const std::uint64_t newest = slices_.frames() - 1;
   std::uint64_t frame =
       std::max(window_began_, newest - std::min<std::uint64_t>(newest, config_.sequence_length));
   const std::size_t complete = complete_rows();
@@ -255,9 +280,9 @@ std::size_t Detector::fill_columns() noexcept {
 
 /// Decides which rows the centre frame is compared with, and computes their differences.
 /// @return whether they are all
-bool Detector::admit_candidates(std::size_t rows) noexcept {
-  const AdmittedRows::Window window{&slices_,         map_, &trajectories_, window_began_,
-                                    slices_.frames(), rows};
+bool Detector::admit_candidates(std::uint64_t newest, std::size_t rows) noexcept {
+  const AdmittedRows::Window window{&slices_,      map_,       &trajectories_,
+                                    window_began_, newest + 1, rows};
   const std::span<const CandidateRun> ranges = ranges_.choose(rows);
   const std::span<const PromisingRows::Promise> promises = promising_.promises();
   const std::size_t ahead = config_.sequence_length - trajectories_.centre();

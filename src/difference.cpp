@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "seqloop/lane_sums.hpp"
+
 namespace seqloop {
 namespace {
 
@@ -51,18 +53,16 @@ bool blank(Difference kind, std::span<const float> descriptor) noexcept {
 }
 
 double squared_norm(std::span<const float> vector) noexcept {
-  double squares = 0.0;
-  for (const float value : vector) {
-    squares += static_cast<double>(value) * static_cast<double>(value);
-  }
-  return squares;
+  return sum_in_lanes(vector.size(), [&](std::size_t i) {
+    return static_cast<double>(vector[i]) * static_cast<double>(vector[i]);
+  });
 }
 
 bool normalise(std::span<float> vector) noexcept {
   const double squares = squared_norm(vector);
   if (squares <= 0.0) return false;
-  const double norm = std::sqrt(squares);
-  for (float& value : vector) value = static_cast<float>(static_cast<double>(value) / norm);
+  const double factor = 1.0 / std::sqrt(squares);
+  for (float& value : vector) value = static_cast<float>(static_cast<double>(value) * factor);
   return true;
 }
 

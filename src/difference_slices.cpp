@@ -1,6 +1,7 @@
 #include "seqloop/difference_slices.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace seqloop {
 namespace {
@@ -10,6 +11,10 @@ double unit_of(const MatcherConfig& config, const DescriptorForm& form) {
   if (config.arithmetic == Arithmetic::float32) return 1.0;
   constexpr double largest = 65'534.0;
   return config.enhance ? largest / Contrast(config.rwindow).largest() : form.unit();
+}
+
+std::size_t columns_of(const MatcherConfig& config) {
+  return config.sequence_length + config.frames_at_once;
 }
 
 }  // namespace
@@ -24,13 +29,13 @@ DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, st
       queries_(arena, {"query descriptors", "lengths of query descriptors", "query sketches"},
                DescriptorForm(config, capacity.descriptor_size), history),
       exact_(arena, "difference slices", "filled parts of the slices",
-             whole_ ? 0 : config.sequence_length + 1, capacity.places),
+             whole_ ? 0 : columns_of(config), capacity.places),
       enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
-                whole_ || !enhance_ ? 0 : config.sequence_length + 1, capacity.places),
+                whole_ || !enhance_ ? 0 : columns_of(config), capacity.places),
       whole_differences_(arena, "difference slices", "filled parts of the slices",
-                         whole_ ? config.sequence_length + 1 : 0, capacity.places),
+                         whole_ ? columns_of(config) : 0, capacity.places),
       whole_enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
-                      whole_ && enhance_ ? config.sequence_length + 1 : 0, capacity.places) {}
+                      whole_ && enhance_ ? columns_of(config) : 0, capacity.places) {}
 
 void DifferenceSlices::push(std::span<const float> descriptor) noexcept {
   queries_.store(row_of(frames_++), descriptor);
@@ -85,6 +90,20 @@ std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std
   if (first >= last) return 0;
   return whole_ ? fill_in(whole_differences_, whole_enhanced_, map, frame, first, last)
                 : fill_in(exact_, enhanced_, map, frame, first, last);
+}
+
+void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexcept {
+  std::array<std::span<std::uint16_t>, DescriptorRows::most_at_once> columns;
+  for (std::uint64_t frame = frames_ - count; frame < frames_;) {
+    // Queries lie in a ring: up to its end in one piece.
+    const std::size_t piece =
+        std::min(static_cast<std::size_t>(frames_ - frame), history_ - row_of(frame));
+    for (std::size_t i = 0; i < piece; ++i) {
+      columns[i] = whole_differences_.take_over(frame + i, map.size());
+    }
+    map.rows().compare(queries_, row_of(frame), std::span(columns).first(piece));
+    frame += piece;
+  }
 }
 
 std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,

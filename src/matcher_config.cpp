@@ -103,6 +103,7 @@ Faults validate(const MatcherConfig& config) {
                       "--full-map refuse, or switch enhance off"});
   }
   check_range(faults, "exclude", config.exclude, 1, many);
+  check_range(faults, "frames-at-once", config.frames_at_once, 1, 64);
   check_range(faults, "standardise-prior", config.standardisation.prior_frames, 1, many);
   check_range(faults, "standardise-horizon", config.standardisation.horizon, 1, many);
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {

@@ -1,6 +1,7 @@
 #include "seqloop/quantised.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -18,11 +19,27 @@ double rounded(double x) noexcept {
   return (x + no_fraction) - no_fraction;
 }
 
+/// The largest of all without their signs. In lanes, because the next comparison of one would have
+/// to wait for the last.
+float highest_of(std::span<const float> values) noexcept {
+  constexpr std::size_t lanes = 16;
+  std::array<float, lanes> highest{};
+  const auto take = [&](std::size_t lane, float value) {
+    const float size = std::abs(value);
+    highest[lane] = size > highest[lane] ? size : highest[lane];
+  };
+  const std::size_t whole = values.size() / lanes * lanes;
+  for (std::size_t i = 0; i < whole; i += lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) take(lane, values[i + lane]);
+  }
+  for (std::size_t i = whole; i < values.size(); ++i) take(i - whole, values[i]);
+  return *std::ranges::max_element(highest);
+}
+
 }  // namespace
 
 Quantised quantise(std::span<const float> descriptor, std::span<std::int8_t> out) noexcept {
-  float highest = 0.0F;
-  for (const float value : descriptor) highest = std::max(highest, std::abs(value));
+  const float highest = highest_of(descriptor);
   std::ranges::fill(out.subspan(descriptor.size()), std::int8_t{0});
   if (highest == 0.0F) {
     std::ranges::fill(out, std::int8_t{0});

@@ -73,6 +73,17 @@ class ColumnRing {
     return computed;
   }
 
+  /// The whole column of a frame that nothing was computed of yet, for the caller to write.
+  /// @return [rows]. Work: marks.
+  [[nodiscard]] std::span<Value> take_over(std::uint64_t frame, std::size_t rows) noexcept {
+    begin_blocks(frame, rows / block_rows * block_rows, rows_);
+    for (std::size_t block = 0; block < rows / block_rows; ++block) {
+      block_frame(frame, block) = frame + 1;
+    }
+    filled_[slot(frame)] = {frame + 1, rows};
+    return values_.subspan(slot(frame) * rows_, rows);
+  }
+
   /// How many of the rows [first, last) `fill` would have to compute.
   [[nodiscard]] std::size_t missing(std::uint64_t frame, std::size_t first,
                                     std::size_t last) const noexcept {

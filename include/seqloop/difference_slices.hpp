@@ -13,9 +13,10 @@
 
 namespace seqloop {
 
-/// The newest columns of the difference matrix D, ds + 1 of them, filled where somebody looks and
-/// enhanced where that is asked for. A difference is computed at most once. Columns are named by
-/// the frame that they belong to. Differences are float, or whole numbers of `unit()`s.
+/// The newest columns of the difference matrix D, ds + 1 of them and those that are taken ahead,
+/// filled where somebody looks and enhanced where that is asked for. A difference is computed at
+/// most once. Columns are named by the frame that they belong to. Differences are float, or whole
+/// numbers of `unit()`s.
 class DifferenceSlices {
  public:
   /// @param history  query descriptors kept, above ds
@@ -55,6 +56,11 @@ class DifferenceSlices {
   /// @return how many had to be computed. Work: that many times D MACs. Allocates: never.
   std::size_t fill(const PlaceMap& map, std::uint64_t frame, std::size_t first,
                    std::size_t last) noexcept;
+
+  /// Computes the whole columns of the newest frames, which nothing was computed of yet; faster
+  /// than one by one where that is possible: exhaustive search by `int8` in a map that is in order.
+  /// @param count frames, at most `MatcherConfig::frames_at_once`. Work: count * N distances.
+  void fill_newest(const PlaceMap& map, std::size_t count) noexcept;
 
   /// How many `fill` would have to compute. Work: reads last - first marks.
   [[nodiscard]] std::size_t missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,

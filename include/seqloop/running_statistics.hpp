@@ -10,7 +10,7 @@ namespace seqloop {
 /// Mean and variance of every feature over a drive, one frame at a time, in fixed memory.
 class RunningStatistics {
  public:
-  /// Allocates: from the arena only, 20 bytes a feature.
+  /// Allocates: from the arena only, 24 bytes a feature.
   RunningStatistics(Arena& arena, std::size_t descriptor_size);
 
   /// Takes a frame in with the weight 1 / (frames so far + 1): exactly the mean and the variance of
@@ -33,8 +33,9 @@ class RunningStatistics {
   /// Subtracts the mean, divides by the deviation (but by no less than a tenth of the average
   /// deviation), and divides the whole by its L2 norm.
   /// @param descriptor [D] read   @param out [>= D] written up to D; may be the same memory
-  /// @return false when nothing deviates: then out is the zero vector
-  /// Work: 4 D. Allocates: never.
+  /// @return false when nothing deviates (variances below 1e-45): then out is the zero vector
+  /// Error: at most 3e-7 of a value, against a deviation and a quotient that are not rounded to
+  /// float. Work: 4 D. Allocates: never.
   bool standardise(std::span<const float> descriptor, std::span<float> out) const noexcept;
 
   [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
@@ -43,11 +44,15 @@ class RunningStatistics {
 
  private:
   void observe_weighted(std::span<const float> descriptor, double weight) noexcept;
+  void sum_up() noexcept;
 
   std::size_t frames_ = 0;
   std::span<double> mean_;       // [D]
   std::span<double> variance_;   // [D], of the population
+  std::span<float> deviation_;   // [D], its square root
   std::span<float> last_taken_;  // [D], the last frame that `follow` took in
+  double variances_ = 0.0;       // sum of all
+  double deviations_ = 0.0;      // sum of all
 };
 
 }  // namespace seqloop

@@ -176,6 +176,39 @@ TEST(RunningStatistics, EqualTheBatchDefinition) {
   EXPECT_NEAR(std::hypot(out[0], out[1]), 1.0, 1e-6);
 }
 
+TEST(RunningStatistics, StandardiseEqualsTheDefinitionForEverySize) {
+  std::mt19937 random(6);
+  std::normal_distribution<float> normal;
+  for (const std::size_t size : {1U, 7U, 8U, 9U, 735U}) {
+    TestArena memory;
+    RunningStatistics statistics(memory.arena, size);
+    std::vector<float> frame(size);
+    for (int i = 0; i < 20; ++i) {
+      // Features of very different deviations, some below the floor.
+      for (std::size_t d = 0; d < size; ++d) {
+        frame[d] = 3.0F + normal(random) / static_cast<float>(d + 1);
+      }
+      statistics.observe(frame);
+    }
+    double floor = 0.0;
+    for (const double variance : statistics.variance()) floor += 0.1 * std::sqrt(variance);
+    floor /= static_cast<double>(size);
+    std::vector<double> right(size);
+    double squares = 0.0;
+    for (std::size_t d = 0; d < size; ++d) {
+      right[d] = (static_cast<double>(frame[d]) - statistics.mean()[d]) /
+                 std::max(std::sqrt(statistics.variance()[d]), floor);
+      squares += right[d] * right[d];
+    }
+    std::vector<float> out(size);
+    EXPECT_TRUE(statistics.standardise(frame, out));
+    for (std::size_t d = 0; d < size; ++d) {
+      const double value = right[d] / std::sqrt(squares);
+      EXPECT_NEAR(static_cast<double>(out[d]), value, 3e-7 * std::abs(value)) << size << ' ' << d;
+    }
+  }
+}
+
 TEST(RunningStatistics, FirstFrameBecomesTheZeroVector) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 2);

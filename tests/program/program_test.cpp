@@ -61,8 +61,8 @@ TEST_F(Run, BenchTimesColumnsOfEverySizeAskedFor) {
   const auto rows = nlohmann::json::parse(
       expect_done("bench --only column --n 5,16 --d 20 --rounds 3 --json").out);
   for (const int places : {5, 16}) {
-    for (const std::string by :
-         {"read-bandwidth", "seqloop-int8-scalar", "seqloop-sketch-scalar", "seqloop-float"}) {
+    for (const std::string by : {"read-bandwidth", "read-bandwidth-float", "seqloop-int8-scalar",
+                                 "seqloop-sketch-scalar", "seqloop-float"}) {
       EXPECT_EQ(std::ranges::count_if(rows,
                                       [&](const nlohmann::json& row) {
                                         return row["what"] == "column" && row["by"] == by &&

@@ -17,6 +17,7 @@
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/drives.hpp"
+#include "seqloop/fastest_read.hpp"
 #include "seqloop/latency_histogram.hpp"
 #include "seqloop/say.hpp"
 #include "seqloop/verb.hpp"
@@ -128,12 +129,13 @@ double microseconds(Nanoseconds duration) {
 
 void bench(const BenchSettings& settings, const RivalColumns& rivals, Faults faults) {
   const std::string& only = settings.only;
-  if (!only.empty() && only != "describe" && only != "step" && only != "column") {
-    faults.push_back({"only", "'" + only + "' is not timed", "describe, step or column"});
+  if (!only.empty() && only != "describe" && only != "step" && only != "column" &&
+      only != "memory") {
+    faults.push_back({"only", "'" + only + "' is not timed", "describe, step, column or memory"});
   }
   if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
   for (const std::size_t places : settings.places) {
-    if (only == "describe") break;
+    if (only == "describe" || only == "memory") break;
     for (Fault& fault : validate(Capacity{places, settings.descriptor_size})) {
       faults.push_back(std::move(fault));
     }
@@ -143,6 +145,7 @@ void bench(const BenchSettings& settings, const RivalColumns& rivals, Faults fau
   say("{}", condition_line());
   std::vector<Contender> all;
   if (only.empty() || only == "describe") time_describing(settings, all);
+  if (only == "memory") time_memory(settings.rounds, all);
   for (const std::size_t places : settings.places) {
     if (only == "column") {
       time_columns({places, settings.descriptor_size}, rivals, settings.rounds, all);
@@ -185,7 +188,7 @@ Verb bench_verb(RivalColumns rivals) {
         bench(*settings, rivals, std::move(faults));
       }};
   verb.options.flag("json", settings->json, "print JSON");
-  verb.options.text("only", settings->only, "describe, step or column [describe and step]");
+  verb.options.text("only", settings->only, "describe, step, column or memory [describe and step]");
   verb.options.add({"n", ValueKind::text, "places of the map, several with commas between [3476]",
                     [settings](std::string_view text) { settings->places = parse_counts(text); }});
   verb.options.count("d", settings->descriptor_size,

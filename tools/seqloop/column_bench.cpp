@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
 #include "seqloop/arena.hpp"
 #include "seqloop/difference.hpp"
+#include "seqloop/fastest_read.hpp"
 #include "seqloop/fixed_distance.hpp"
 #include "seqloop/integer_kernels.hpp"
 #include "seqloop/quantised.hpp"
@@ -68,19 +68,6 @@ struct Places {
   std::span<std::uint64_t> sketches;
 };
 
-/// Reads memory and does next to nothing with it.
-std::uint64_t read_all(std::span<const std::int8_t> memory) {
-  std::array<std::uint64_t, 8> sums{};
-  const auto* words = reinterpret_cast<const std::uint64_t*>(memory.data());
-  for (std::size_t i = 0; i + sums.size() <= memory.size() / sizeof(std::uint64_t);
-       i += sums.size()) {
-    for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += words[i + j];
-  }
-  std::uint64_t total = 0;
-  for (const std::uint64_t sum : sums) total += sum;
-  return total;
-}
-
 std::vector<Contender> our_columns(Places& places) {
   std::vector<Contender> contenders;
   const auto add = [&](std::string by, std::size_t bytes, std::function<void()> round) {
@@ -88,10 +75,8 @@ std::vector<Contender> our_columns(Places& places) {
                           bytes, std::move(round)});
   };
   add("read-bandwidth", places.small_rows.size_bytes(),
-      [&places, sum = std::uint64_t{0}]() mutable {
-        sum += read_all(places.small_rows);
-        places.dots.front() = static_cast<std::int32_t>(sum & 1U);
-      });
+      fastest_read(std::as_bytes(places.small_rows)));
+  add("read-bandwidth-float", places.rows.size_bytes(), fastest_read(std::as_bytes(places.rows)));
   for (const IntegerKernels* kernels : integer_kernels()) {
     if (!kernels->supported()) continue;
     add(fmt::format("seqloop-int8-{}", kernels->name), places.small_rows.size_bytes(),

@@ -21,7 +21,8 @@ struct ColumnData {
 using RivalColumns = std::function<std::vector<Contender>(const ColumnData&)>;
 
 /// A column of distances: int8 by every variant that this processor has (the one in use first),
-/// sketches, float, the rivals, and how long it takes to read as much as int8 does.
+/// sketches, float, the rivals, and how long it takes just to read the rows in int8 and in float.
+/// Rows are read again and again: from the cache that they fit, if they fit one.
 void time_columns(const Capacity& size, const RivalColumns& rivals, std::size_t rounds,
                   std::vector<Contender>& timed);
 

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "files/descriptor_source.hpp"
 #include "files/npy_file.hpp"
@@ -21,6 +23,9 @@
 
 namespace seqloop::program {
 namespace {
+
+// A recording is there whole, so that places can be read once for many frames.
+constexpr std::size_t frames_at_once = 32;
 
 struct MatchSettings {
   std::filesystem::path reference;
@@ -46,8 +51,9 @@ std::string csv_row(const FrameReport& report) {
 void match(const MatchSettings& settings, Faults faults) {
   take_interruptions();
   const bool closing = settings.reference.empty();
-  const MatcherConfig config =
+  MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  config.frames_at_once = frames_at_once;
   std::optional<files::Matrix> query;
   std::optional<files::Matrix> reference;
   if (settings.query.empty()) {
@@ -86,13 +92,20 @@ void match(const MatchSettings& settings, Faults faults) {
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
-  for (std::size_t row = 0; row < query->rows; ++row) {
+  std::vector<std::span<const float>> frames;
+  std::vector<FrameReport> reports(config.frames_at_once);
+  for (std::size_t row = 0; row < query->rows; row += frames.size()) {
     stop_if_interrupted();
-    const FrameReport report = detector.step(query->row(row));
-    progress.step();
-    if (!report.match) continue;
-    out->write(csv_row(report));
-    ++answered;
+    frames.clear();
+    const std::size_t last = std::min(row + config.frames_at_once, query->rows);
+    for (std::size_t next = row; next < last; ++next) frames.push_back(query->row(next));
+    detector.steps(frames, std::span(reports).first(frames.size()));
+    for (const FrameReport& report : std::span(reports).first(frames.size())) {
+      progress.step();
+      if (!report.match) continue;
+      out->write(csv_row(report));
+      ++answered;
+    }
   }
   progress.done();
   out->commit();
