@@ -49,6 +49,7 @@ void AdmittedRows::clear() noexcept {
 }
 
 void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
+  if (rows_ == most_rows_) return;
   for (;;) {
     const Cost more = limited_ ? cost(window, range) : Cost{1, 0};
     if (more.rows == 0) return;
@@ -62,8 +63,13 @@ void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
       runs_.add(range);
       return;
     }
-    const std::size_t quarter = std::max<std::size_t>(length / 4, 1);
-    range = {range.first + quarter, range.last - (length > 2 ? quarter : 0)};
+    // About as many rows around the middle as can be afforded, at least one fewer.
+    const std::size_t left = std::min(most_distances_ - distances_, more.distances);
+    const std::size_t share = more.distances == 0 ? length : length * left / more.distances;
+    const std::size_t half = (std::min({share, most_rows_ - rows_, length - 1}) - 1) / 2;
+    const std::size_t middle = range.first + length / 2;
+    range = share == 0 ? CandidateRun{middle, middle + 1}
+                       : CandidateRun{middle - half, middle + half + 1};
   }
 }
 
@@ -81,9 +87,10 @@ AdmittedRows::Cost AdmittedRows::cost(const Window& window, CandidateRun range) 
 void AdmittedRows::compute(const Window& window, CandidateRun range) noexcept {
   runs_.for_each_outside(range, [&](CandidateRun part) {
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
+      // A column is computed whole, or left to the next frames.
       const std::size_t left = most_distances_ - distances_;
-      distances_ +=
-          window.slices->fill(*window.map, frame, first, std::min(last - first, left) + first);
+      if (limited_ && window.slices->missing(*window.map, frame, first, last) > left) return;
+      distances_ += window.slices->fill(*window.map, frame, first, last);
     });
   });
 }

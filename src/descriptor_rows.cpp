@@ -15,11 +15,15 @@ namespace {
 // Whole numbers on their way to differences: few enough for the first-level cache.
 constexpr std::size_t abreast = 256;
 
-constexpr std::size_t rest_words = sketch_words - DescriptorRows::first_words;
 constexpr double sketch_bits = 64.0 * static_cast<double>(sketch_words);
 
 std::size_t stride_of(const DescriptorForm& form) {
   return form.arithmetic == Arithmetic::float32 ? padded_size(form.size) : padded_bytes(form.size);
+}
+
+std::size_t words_of(const DescriptorForm& form) {
+  if (form.arithmetic == Arithmetic::sketch) return sketch_words;
+  return form.relocalising ? DescriptorRows::close_words : 0;
 }
 
 /// Calls `work(begin, count)` for pieces of at most `abreast`.
@@ -35,7 +39,7 @@ void in_pieces(std::size_t count, Work work) {
 DescriptorForm::DescriptorForm(const MatcherConfig& config, std::size_t descriptor_size) noexcept
     : difference(config.difference),
       arithmetic(config.arithmetic),
-      sketches(config.arithmetic == Arithmetic::sketch || relocalises(config)),
+      relocalising(relocalises(config)),
       size(descriptor_size) {}
 
 double DescriptorForm::unit() const noexcept {
@@ -48,6 +52,7 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
     : form_(form),
       kernels_(&best_integer_kernels()),
       stride_(stride_of(form)),
+      words_(words_of(form)),
       exact_(arena.take<float>(names.values,
                                form.arithmetic == Arithmetic::float32 ? rows * stride_ : 0)),
       small_(arena.take<std::int8_t>(names.values,
@@ -56,10 +61,10 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
           arena.take<double>(names.lengths, form.arithmetic == Arithmetic::int8 ? rows : 0)),
       quantised_(arena.take<std::int8_t>(
           "what a sketch is made of",
-          form.sketches && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
-      first_(arena.take<std::uint64_t>(names.sketches, form.sketches ? rows * first_words : 0)),
-      rest_(arena.take<std::uint64_t>(
-          names.sketches, form.arithmetic == Arithmetic::sketch ? rows * rest_words : 0)) {}
+          words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
+      sketches_(arena.take<std::uint64_t>(names.sketches, rows * words_)),
+      scanned_(arena.take<std::uint64_t>(names.sketches,
+                                         form.relocalising ? rows * scanned_words : 0)) {}
 
 void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
@@ -69,18 +74,14 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
   if (form_.arithmetic == Arithmetic::int8) {
     bytes = small(row);
     inverse_lengths_[row] = inverse_length(quantise(descriptor, bytes).squared_norm);
-  } else if (form_.sketches) {
+  } else if (words_ > 0) {
     quantise(descriptor, bytes);
   }
-  if (!form_.sketches) return;
-  std::array<std::uint64_t, sketch_words> words;
-  const bool whole = form_.arithmetic == Arithmetic::sketch;
-  const std::span<std::uint64_t> made = std::span(words).first(whole ? sketch_words : first_words);
-  sketch(bytes.first(form_.size), made);
-  std::ranges::copy(made.first(first_words), first_.subspan(row * first_words).begin());
-  if (whole) {
-    std::ranges::copy(made.subspan(first_words), rest_.subspan(row * rest_words).begin());
-  }
+  if (words_ == 0) return;
+  const std::span<std::uint64_t> words = sketches_.subspan(row * words_, words_);
+  sketch(bytes.first(form_.size), words);
+  if (!form_.relocalising) return;
+  std::ranges::copy(words.first(scanned_words), scanned_.subspan(row * scanned_words).begin());
 }
 
 void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,
@@ -92,8 +93,8 @@ void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,
   copy_row(exact_, from.exact_, stride_);
   copy_row(small_, from.small_, stride_);
   copy_row(inverse_lengths_, from.inverse_lengths_, 1);
-  copy_row(first_, from.first_, first_words);
-  copy_row(rest_, from.rest_, rest_words);
+  copy_row(sketches_, from.sketches_, words_);
+  copy_row(scanned_, from.scanned_, scanned_words);
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
@@ -107,16 +108,11 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
                              std::span<std::uint16_t> out) const noexcept {
   if (form_.arithmetic == Arithmetic::sketch) {
     std::array<std::uint32_t, abreast> bits;
-    std::array<std::uint32_t, abreast> more;
     in_pieces(out.size(), [&](std::size_t begin, std::size_t count) {
-      const std::size_t row = first + begin;
-      kernels_->hamming_column(&queries.first_[query * first_words], &first_[row * first_words],
-                               first_words, count, bits.data());
-      kernels_->hamming_column(&queries.rest_[query * rest_words], &rest_[row * rest_words],
-                               rest_words, count, more.data());
-      for (std::size_t i = 0; i < count; ++i) {
-        out[begin + i] = static_cast<std::uint16_t>(bits[i] + more[i]);
-      }
+      kernels_->hamming_column(&queries.sketches_[query * words_],
+                               &sketches_[(first + begin) * words_], words_, count, bits.data());
+      std::ranges::transform(std::span(bits).first(count), out.subspan(begin).begin(),
+                             [](std::uint32_t b) { return static_cast<std::uint16_t>(b); });
     });
     return;
   }
@@ -153,11 +149,17 @@ double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
   return difference / form_.unit();
 }
 
-void DescriptorRows::compare_first_words(const DescriptorRows& queries, std::size_t query,
-                                         std::size_t first,
-                                         std::span<std::uint32_t> out) const noexcept {
-  kernels_->hamming_column(&queries.first_[query * first_words], &first_[first * first_words],
-                           first_words, out.size(), out.data());
+void DescriptorRows::scan(const DescriptorRows& queries, std::size_t query, std::size_t first,
+                          std::span<std::uint32_t> out) const noexcept {
+  if (out.empty()) return;
+  kernels_->hamming_column(&queries.scanned_[query * scanned_words],
+                           &scanned_[first * scanned_words], scanned_words, out.size(), out.data());
+}
+
+std::uint32_t DescriptorRows::look_closely(const DescriptorRows& queries, std::size_t query,
+                                           std::size_t row) const noexcept {
+  return kernels_->hamming(&queries.sketches_[query * words_], &sketches_[row * words_],
+                           close_words);
 }
 
 void DescriptorRows::restore(std::size_t row, std::span<float> out) const noexcept {
@@ -170,10 +172,7 @@ void DescriptorRows::restore(std::size_t row, std::span<float> out) const noexce
         out[i] = static_cast<float>(small(row)[i] * inverse_lengths_[row]);
         break;
       case Arithmetic::sketch: {
-        const std::size_t word = i / 64;
-        const std::uint64_t bits = word < first_words
-                                       ? first_[row * first_words + word]
-                                       : rest_[row * rest_words + word - first_words];
+        const std::uint64_t bits = sketches_[row * words_ + i / 64];
         const auto length = static_cast<float>(1.0 / std::sqrt(sketch_bits));
         out[i] = ((bits >> (i % 64)) & 1U) != 0 ? length : -length;
         break;

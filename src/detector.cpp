@@ -22,9 +22,16 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back({"map", "it holds " + std::to_string(map.size()) + " places already",
                       "closing loops starts from an empty map"});
   }
-  if (map.rows().form() != DescriptorForm(config, map.descriptor_size())) {
+  if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
+      map.capacity() < least_places(config)) {
+    faults.push_back(
+        {"max-places", std::to_string(map.capacity()) + " leave no candidates once the map is full",
+         "take " + std::to_string(least_places(config)) + " or more with this exclude and ds"});
+  }
+  if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
+      map.full_map() != config.full_map) {
     faults.push_back({"map", "it was made for another configuration",
-                      "give both the same arithmetic, difference and relocalising"});
+                      "give both the same arithmetic, difference, relocalising and full-map"});
   }
   if (config.use == Use::localise && map.size() != 0 &&
       config.standardisation.on != (map.statistics().frames() != 0)) {
@@ -40,10 +47,12 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
 Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descriptor_size()}; }
 
 /// Query descriptors that must be kept: the window's, and what the change degree of its centre
-/// looks back on.
+/// looks back on. A whole number of what is taken at once, so that this lies in one piece.
 std::size_t history(const MatcherConfig& config) {
   const std::size_t ds = config.sequence_length;
-  return std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1) + config.frames_at_once - 1;
+  const std::size_t kept = std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
+  const std::size_t at_once = config.frames_at_once;
+  return (kept + at_once - 1 + at_once - 1) / at_once * at_once;
 }
 
 /// Whether a descriptor is what its difference wants: finite, and for Euclid of unit length
@@ -75,8 +84,8 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
   if (relocalises(config)) {
     const std::size_t rows = std::min(AdmittedRows::most_rows(config), capacity.places);
-    return {rows, distances_a_frame(config) + change, rows * lines,
-            PromisingRows::most_sketches(config, capacity.places)};
+    const PromisingRows::Looks looks = PromisingRows::most_looks(config, capacity.places);
+    return {rows, distances_a_frame(config) + change, rows * lines, looks.scanned, looks.closely};
   }
   // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
   // column that repeats another (`skip`) has as many rows more to look at as it is younger, and
@@ -91,7 +100,7 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
     const std::size_t growing = reach - std::min(reach, config.exclude);
     distances += ds * (ds + 1) / 2 + (ds + growing) * growing;
   }
-  return {capacity.places, distances + change, capacity.places * lines, 0};
+  return {capacity.places, distances + change, capacity.places * lines, 0, 0};
 }
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
@@ -155,7 +164,9 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   const std::size_t rows =
       rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
   if (relocalises(config_)) {
-    report.work.sketches = promising_.look(slices_, *map_, rows, window_began_);
+    const PromisingRows::Looks looks = promising_.look(slices_, *map_, rows, window_began_);
+    report.work.scanned = looks.scanned;
+    report.work.sketches = looks.closely;
   }
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
   if (report.newest >= window_began_ + after_centre) report.frame = report.newest - after_centre;
@@ -170,7 +181,8 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
         search_.score(slices_, map_->order(), report.newest - config_.sequence_length, run, rows);
   }
   const bool keep_rival = report.full_search || relocalises(config_);
-  const auto best = decision_.decide(search_.scores(), admitted_.runs(), keep_rival);
+  const auto best =
+      decision_.decide(search_.scores(), admitted_.runs(), keep_rival, promising_.promises());
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
 
@@ -251,7 +263,7 @@ std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
     return static_cast<std::size_t>(std::min<std::uint64_t>(old, map_->size()));
   }
   // Every frame became a place, so numbers are frames; the newest ones are all there.
-  const std::uint64_t newer = slices_.frames() - old;
+  const std::uint64_t newer = slices_.frames() - std::min(old, slices_.frames());
   return map_->size() - static_cast<std::size_t>(std::min<std::uint64_t>(newer, map_->size()));
 }
 
@@ -285,13 +297,11 @@ bool Detector::admit_candidates(std::uint64_t newest, std::size_t rows) noexcept
                                     window_began_, newest + 1, rows};
   const std::span<const CandidateRun> ranges = ranges_.choose(rows);
   const std::span<const PromisingRows::Promise> promises = promising_.promises();
-  const std::size_t ahead = config_.sequence_length - trajectories_.centre();
   admitted_.clear();
   // The best of both first, so that neither starves.
   for (std::size_t i = 0; i < std::max(ranges.size(), promises.size()); ++i) {
     if (i < ranges.size()) admitted_.admit(window, ranges[i]);
-    if (i >= promises.size() || promises[i].row < ahead) continue;
-    admitted_.admit(window, ranges_.around(promises[i].row - ahead, rows));
+    if (i < promises.size()) admitted_.admit(window, ranges_.around(promises[i].centre, rows));
   }
   return ranges_.full_search();
 }

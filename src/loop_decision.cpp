@@ -1,5 +1,6 @@
 #include "seqloop/loop_decision.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace seqloop {
@@ -29,14 +30,23 @@ Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs
 
 }  // namespace
 
-std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
-                                            std::span<const CandidateRun> runs,
-                                            bool keep_rival) noexcept {
+std::optional<BestRow> LoopDecision::decide(
+    std::span<const double> scores, std::span<const CandidateRun> runs, bool keep_rival,
+    std::span<const PromisingRows::Promise> promises) noexcept {
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
   if (best.scored == 0) return std::nullopt;
-  const Lowest rival = lowest(scores, runs, [&](std::size_t row) {
+  const auto outside = [&](std::size_t row) {
     return row + half_window_ < best.row || row > best.row + half_window_;
-  });
+  };
+  Lowest rival = lowest(scores, runs, outside);
+  for (const PromisingRows::Promise& promise : promises) {
+    const bool scored = std::ranges::any_of(runs, [&](CandidateRun run) {
+      return run.first <= promise.centre && promise.centre < run.last;
+    });
+    if (scored || !outside(promise.centre)) continue;
+    ++rival.scored;
+    rival.score = std::min(rival.score, promise.difference);
+  }
   const std::optional<double> rival_score =
       rival.scored > 0 ? std::optional(rival.score) : last_rival_;
   if (keep_rival) last_rival_ = rival_score;

@@ -45,11 +45,13 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
 }
 
 /// Distances that a range of num + 1 rows takes a frame while it moves along with the robot: the
-/// newest column, and what lines to the window's oldest column reach in addition.
+/// newest column, what lines to the window's oldest column reach in addition, and what enhances
+/// them.
 std::size_t distances_of_one_range(const MatcherConfig& config) {
   const auto spread = static_cast<std::size_t>(
       std::ceil((config.vmax - config.vmin) * static_cast<double>(config.sequence_length)));
-  return config.num + 1 + spread;
+  const std::size_t around = config.enhance ? config.rwindow / 2 * 2 : 0;
+  return config.num + 1 + spread + around;
 }
 
 }  // namespace
@@ -62,6 +64,12 @@ std::size_t distances_a_frame(const MatcherConfig& config) noexcept {
   constexpr std::size_t least = 256;
   if (config.relocalising.distances != 0) return config.relocalising.distances;
   return std::max(least, 4 * distances_of_one_range(config));
+}
+
+std::size_t least_places(const MatcherConfig& config) noexcept {
+  const auto ds = static_cast<double>(config.sequence_length);
+  return config.exclude + config.sequence_length + 2 +
+         static_cast<std::size_t>(std::ceil(config.vmin * ds));
 }
 
 Faults validate(const MatcherConfig& config) {
@@ -86,13 +94,13 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
   if (relocalises(config)) {
-    check_range(faults, "slice", config.relocalising.slice, 1, many);
+    check_range(faults, "slice", config.relocalising.slice, 2, many);
     const std::size_t least = distances_of_one_range(config);
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
       faults.push_back({"distances",
                         std::to_string(config.relocalising.distances) +
                             " is less than one range takes, " + std::to_string(least),
-                        "raise it, or lower num, or ds, or vmax"});
+                        "raise it, or lower num, ds or vmax, or switch enhance off"});
     }
   }
   if (config.arithmetic != Arithmetic::float32 && config.difference != Difference::euclidean) {

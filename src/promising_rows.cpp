@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace seqloop {
@@ -12,16 +13,28 @@ namespace {
 // is remembered, are compared with some frames before it too, so far apart that they differ.
 constexpr std::size_t frames_looked_at = 4;
 constexpr std::size_t frames_apart = 3;
-constexpr std::size_t looked_at_closely = 8;
+constexpr std::size_t looked_at_closely = 16;
 
 // What is remembered may be faster or slower than it was in the map.
 constexpr std::size_t slack = 1;
+
+// What is remembered is weighed along the window by so many lines and pieces of it.
+constexpr std::size_t lines_weighed = 9;
+constexpr std::size_t frames_weighed = 8;
 
 // Of so many neighbours in a slice only the best is looked at closely.
 constexpr std::size_t neighbours = 16;
 
 constexpr std::uint32_t chance =
-    DescriptorRows::first_words * 64 / 2;  // bits that differ by chance
+    DescriptorRows::close_words * 64 / 2;  // bits that differ by chance
+
+/// How far apart two unit vectors are, of which so large a share of the bits differs: the angle
+/// between them is about pi times the share. The sine is Bhaskara's, which is off by .002 at most
+/// and the same on every processor.
+double chord(double share) noexcept {
+  const double x = share / 2.0 * (1.0 - share / 2.0);
+  return 32.0 * x / (5.0 - 4.0 * x);
+}
 
 std::size_t slice_of(const MatcherConfig& config, std::size_t places) {
   return std::min(config.relocalising.slice, places);
@@ -30,19 +43,28 @@ std::size_t slice_of(const MatcherConfig& config, std::size_t places) {
 }  // namespace
 
 PromisingRows::PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places)
-    : slice_(slice_of(config, places)), near_(config.num / 2) {
+    : ds_(config.sequence_length),
+      vmin_(config.vmin),
+      vmax_(config.vmax),
+      slice_(slice_of(config, places)),
+      near_(config.num / 2) {
   const bool used = relocalises(config);
-  promises_ = arena.take<Promise>("promising rows", used ? most + 1 : 0);
-  best_ = arena.take<Promise>("best rows of a slice", used ? looked_at_closely + 1 : 0);
+  remembered_ = arena.take<Alike>("rows that look alike", used ? most + 1 : 0);
+  promises_ = arena.take<Promise>("promising lines", used ? most : 0);
+  best_ = arena.take<Alike>("best rows of a slice", used ? looked_at_closely + 1 : 0);
   bits_ = arena.take<std::uint32_t>("differing bits of a slice", used ? slice_ : 0);
 }
 
-std::size_t PromisingRows::most_sketches(const MatcherConfig& config, std::size_t places) noexcept {
-  return slice_of(config, places) + (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at;
+PromisingRows::Looks PromisingRows::most_looks(const MatcherConfig& config,
+                                               std::size_t places) noexcept {
+  return {slice_of(config, places),
+          (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at +
+              most * lines_weighed * (frames_weighed + 1)};
 }
 
-std::size_t PromisingRows::look(const DifferenceSlices& slices, const PlaceMap& map,
-                                std::size_t rows, std::uint64_t oldest) noexcept {
+PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const PlaceMap& map,
+                                         std::size_t rows, std::uint64_t oldest) noexcept {
+  scanned_ = 0;
   sketches_ = 0;
   const std::uint64_t newest = slices.frames() - 1;
   frames_ = std::min<std::size_t>(frames_looked_at,
@@ -51,106 +73,154 @@ std::size_t PromisingRows::look(const DifferenceSlices& slices, const PlaceMap& 
   const std::size_t before = std::exchange(count_, 0);
   for (std::size_t i = 0; i < before; ++i) {
     // What is remembered goes where count_ is or before, which has been read already.
-    look_closely(slices, map, rows, promises_[i].row + 1);
+    look_closely(slices, map, rows, remembered_[i].row + 1);
   }
-  for (const Promise& best : best_of_slice(slices, map, rows)) {
+  for (const Alike& best : best_of_slice(slices, map, rows)) {
     look_closely(slices, map, rows, best.row);
   }
-  return sketches_;
+  weigh(slices, map, rows, oldest);
+  return {scanned_, sketches_};
 }
 
 /// The rows of the next slice that look most like the newest frame, as far as they are no
 /// neighbours.
-std::span<const PromisingRows::Promise> PromisingRows::best_of_slice(const DifferenceSlices& slices,
-                                                                     const PlaceMap& map,
-                                                                     std::size_t rows) noexcept {
+std::span<const PromisingRows::Alike> PromisingRows::best_of_slice(const DifferenceSlices& slices,
+                                                                   const PlaceMap& map,
+                                                                   std::size_t rows) noexcept {
   if (rows == 0) return {};
   // The slices go round: behind the last row comes the first, and none is longer than the map.
   const std::size_t begin = next_ % rows;
   const std::span<std::uint32_t> bits = bits_.first(std::min(slice_, rows));
   const std::size_t to_the_end = std::min(bits.size(), rows - begin);
-  compare(slices, map, 0, begin, bits.first(to_the_end));
-  compare(slices, map, 0, 0, bits.subspan(to_the_end));
+  scan(slices, map, begin, bits.first(to_the_end));
+  scan(slices, map, 0, bits.subspan(to_the_end));
   next_ = (begin + bits.size()) % rows;
   std::size_t found = 0;
   for (std::size_t first = 0; first < bits.size(); first += neighbours) {
     const auto some = bits.subspan(first, std::min(neighbours, bits.size() - first));
-    const auto least = std::ranges::min_element(some);
-    if (found == looked_at_closely && *least >= best_[found - 1].bits) continue;
+    std::uint32_t least = some.front();
+    for (const std::uint32_t differing : some) least = std::min(least, differing);
+    if (found == looked_at_closely && least >= best_[found - 1].bits) continue;
     std::size_t place = found;
-    for (; place > 0 && best_[place - 1].bits > *least; --place) best_[place] = best_[place - 1];
-    const auto row = begin + first + static_cast<std::size_t>(std::distance(some.begin(), least));
-    best_[place] = {*least, row % rows};
+    for (; place > 0 && best_[place - 1].bits > least; --place) best_[place] = best_[place - 1];
+    const auto where = std::distance(some.begin(), std::ranges::find(some, least));
+    best_[place] = {least, (begin + first + static_cast<std::size_t>(where)) % rows};
     found = std::min(found + 1, looked_at_closely);
   }
   return best_.first(found);
+}
+
+/// Compares the newest frame with consecutive rows.
+void PromisingRows::scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
+                         std::span<std::uint32_t> bits) noexcept {
+  const std::size_t query = slices.row_of(slices.frames() - 1);
+  map.order().in_slots(
+      first, first + bits.size(), [&](std::size_t row, std::size_t slot, std::size_t count) {
+        map.rows().scan(slices.queries(), query, slot, bits.subspan(row - first, count));
+      });
+  scanned_ += bits.size();
 }
 
 /// Compares a row and those beside it with several frames, and remembers the best of them.
 void PromisingRows::look_closely(const DifferenceSlices& slices, const PlaceMap& map,
                                  std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
-  const std::size_t first = row - std::min(row, slack);
-  const std::size_t count = std::min(row + slack + 1, rows) - first;
-  std::array<std::uint32_t, 2 * slack + 1> sums{};
-  for (std::size_t frame = 0; frame < frames_; ++frame) {
-    // The rows that this frame would show if the newest one showed these.
-    const std::size_t back = frame * frames_apart;
-    const std::size_t missing = std::min(count, back - std::min(back, first));
-    std::array<std::uint32_t, 2 * slack + 1> bits;
-    bits.fill(chance);
-    compare(slices, map, back, first + missing - back,
-            std::span(bits).subspan(missing, count - missing));
-    for (std::size_t i = 0; i < count; ++i) sums[i] += bits[i];
-  }
-  Promise best{sums[row - first], row};
-  for (std::size_t i = 0; i < count; ++i) {
-    if (sums[i] < best.bits) best = {sums[i], first + i};
+  Alike best{std::numeric_limits<std::uint32_t>::max(), row};
+  for (std::size_t r = row - std::min(row, slack); r < std::min(row + slack + 1, rows); ++r) {
+    std::uint32_t sum = 0;
+    for (std::size_t frame = 0; frame < frames_; ++frame) {
+      const std::size_t back = frame * frames_apart;
+      sum += differing_bits(slices, map, rows, back, r, back);
+    }
+    if (sum < best.bits) best = {sum, r};
   }
   remember(best);
 }
 
-/// Differing bits of a frame, so many before the newest, and consecutive rows.
-void PromisingRows::compare(const DifferenceSlices& slices, const PlaceMap& map, std::size_t back,
-                            std::size_t first, std::span<std::uint32_t> bits) noexcept {
-  const std::size_t query = slices.row_of(slices.frames() - 1 - back);
-  map.order().in_slots(first, first + bits.size(),
-                       [&](std::size_t row, std::size_t slot, std::size_t count) {
-                         map.rows().compare_first_words(slices.queries(), query, slot,
-                                                        bits.subspan(row - first, count));
-                       });
-  sketches_ += bits.size();
+/// Differing bits of a frame, so many before the newest, and the row so many before a row; rows
+/// that are not there look like any other.
+std::uint32_t PromisingRows::differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
+                                            std::size_t rows, std::size_t back, std::size_t row,
+                                            std::size_t behind) noexcept {
+  if (behind > row || row - behind >= rows) return chance;
+  ++sketches_;
+  return map.rows().look_closely(slices.queries(), slices.row_of(slices.frames() - 1 - back),
+                                 map.order().slot(row - behind));
 }
 
 /// Keeps a promise if it is among the best, and the best of those near it.
-void PromisingRows::remember(Promise promise) noexcept {
-  const auto begin = promises_.begin();
+void PromisingRows::remember(Alike alike) noexcept {
+  const auto begin = remembered_.begin();
   auto end = begin + static_cast<std::ptrdiff_t>(count_);
-  const auto near = std::find_if(begin, end, [&](const Promise& other) {
-    return other.row <= promise.row + near_ && promise.row <= other.row + near_;
+  const auto near = std::find_if(begin, end, [&](const Alike& other) {
+    return other.row <= alike.row + near_ && alike.row <= other.row + near_;
   });
   if (near != end) {
-    if (near->bits <= promise.bits) return;
+    if (near->bits <= alike.bits) return;
     std::move(near + 1, end, near);
     --end;
     --count_;
   }
   const auto place =
-      std::find_if(begin, end, [&](const Promise& other) { return promise.bits < other.bits; });
+      std::find_if(begin, end, [&](const Alike& other) { return alike.bits < other.bits; });
   std::move_backward(place, end, end + 1);
-  *place = promise;
+  *place = alike;
   count_ = std::min(count_ + 1, most);
 }
 
+/// Weighs what is remembered along the whole window: by the line of those through it that differs
+/// least.
+void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+                          std::uint64_t oldest) noexcept {
+  const std::uint64_t reach = slices.frames() - 1 - oldest;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::size_t row = remembered_[i].row;
+    std::array<std::uint32_t, lines_weighed> sums{};
+    std::size_t frames = 0;
+    for (std::size_t piece = 0; piece <= frames_weighed; ++piece) {
+      const std::size_t back = ds_ * piece / frames_weighed;
+      if (back > reach) break;
+      ++frames;
+      std::uint32_t bits = 0;
+      for (std::size_t line = 0; line < lines_weighed; ++line) {
+        // Lines that are still together at this frame look at the same row.
+        const std::size_t behind = rows_behind(line, back);
+        if (line == 0 || behind != rows_behind(line - 1, back)) {
+          bits = differing_bits(slices, map, rows, back, row, behind);
+        }
+        sums[line] += bits;
+      }
+    }
+    const auto least = std::ranges::min_element(sums);
+    const auto line = static_cast<std::size_t>(std::distance(sums.begin(), least));
+    const Promise promise{
+        chord(static_cast<double>(*least) / (2.0 * chance * static_cast<double>(frames))),
+        row - std::min(row, rows_behind(line, ds_ - ds_ / 2))};
+    std::size_t place = i;
+    for (; place > 0 && promises_[place - 1].difference > promise.difference; --place) {
+      promises_[place] = promises_[place - 1];
+    }
+    promises_[place] = promise;
+  }
+}
+
+/// Rows that a line lies behind its newest one, so many frames before the newest.
+std::size_t PromisingRows::rows_behind(std::size_t line, std::size_t back) const noexcept {
+  constexpr double half = 0.5;
+  const double velocity =
+      vmin_ + (vmax_ - vmin_) * static_cast<double>(line) / static_cast<double>(lines_weighed - 1);
+  return static_cast<std::size_t>(velocity * static_cast<double>(back) + half);
+}
+
 void PromisingRows::skip(std::uint64_t frames) noexcept {
-  for (Promise& promise : promises_.first(count_)) {
-    promise.row += static_cast<std::size_t>(frames);
+  for (Alike& alike : remembered_.first(count_)) {
+    alike.row += static_cast<std::size_t>(frames);
   }
 }
 
 void PromisingRows::removed(std::size_t row) noexcept {
-  for (Promise& promise : promises_.first(count_)) {
-    if (promise.row > row) --promise.row;
+  for (Alike& alike : remembered_.first(count_)) {
+    if (alike.row > row) --alike.row;
   }
   if (next_ > row) --next_;
 }

@@ -43,14 +43,4 @@ double Trajectories::velocity(std::size_t line) const noexcept {
          static_cast<double>(ds_);
 }
 
-// Offsets are monotone in m: left of the centre the fastest line is the lowest, right of it the
-// slowest.
-std::int32_t Trajectories::lowest(std::size_t i) const noexcept {
-  return std::min(offsets(0)[i], offsets(count() - 1)[i]);
-}
-
-std::int32_t Trajectories::highest(std::size_t i) const noexcept {
-  return std::max(offsets(0)[i], offsets(count() - 1)[i]);
-}
-
 }  // namespace seqloop

@@ -95,7 +95,7 @@ class ColumnRing {
       if (block_frames_[slot(frame) * blocks_ + block] != frame + 1) {
         count += end - row;
       } else {
-        for (std::size_t r = row; r < end; ++r) count += values[r] == not_computed ? 1U : 0U;
+        count += static_cast<std::size_t>(std::count(values + row, values + end, not_computed));
       }
       row = end;
     }

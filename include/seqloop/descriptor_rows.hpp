@@ -16,8 +16,8 @@ struct DescriptorForm {
 
   Difference difference;
   Arithmetic arithmetic;
-  bool sketches;     ///< whether there is one of each, for comparing or for relocalising
-  std::size_t size;  ///< D
+  bool relocalising;  ///< whether there are sketches to relocalise by
+  std::size_t size;   ///< D
 
   bool operator==(const DescriptorForm&) const = default;
 
@@ -35,8 +35,9 @@ struct RowNames {
 /// Descriptors side by side, in the form in which they are compared.
 class DescriptorRows {
  public:
-  /// Bits of a sketch that relocalising looks at first; they lie together.
-  static constexpr std::size_t first_words = 4;
+  /// Words of a sketch that relocalising scans the map by, and those that it looks closely by.
+  static constexpr std::size_t scanned_words = 4;
+  static constexpr std::size_t close_words = 16;
 
   /// Allocates: from the arena only.
   DescriptorRows(Arena& arena, const RowNames& names, const DescriptorForm& form, std::size_t rows);
@@ -66,9 +67,14 @@ class DescriptorRows {
   /// The difference of two, 0 .. 2 between unit vectors.
   [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;
 
-  /// Differing bits of the first words of sketches. @param out [count]
-  void compare_first_words(const DescriptorRows& queries, std::size_t query, std::size_t first,
-                           std::span<std::uint32_t> out) const noexcept;
+  /// Differing bits of the scanned words of one sketch and consecutive ones.
+  /// @param out [count] 0 .. 64 scanned_words. Work: count * scanned_words.
+  void scan(const DescriptorRows& queries, std::size_t query, std::size_t first,
+            std::span<std::uint32_t> out) const noexcept;
+
+  /// Differing bits of the close words of two sketches. @return 0 .. 64 close_words
+  [[nodiscard]] std::uint32_t look_closely(const DescriptorRows& queries, std::size_t query,
+                                           std::size_t row) const noexcept;
 
   /// About what was stored, to show or to save: exact for `float32`, to half a 127th of the largest
   /// value for `int8`, signs for `sketch`.
@@ -89,12 +95,13 @@ class DescriptorRows {
   DescriptorForm form_;
   const IntegerKernels* kernels_;
   std::size_t stride_;                 // values from row to row
+  std::size_t words_;                  // of a sketch
   std::span<float> exact_;             // [rows, stride], float32
   std::span<std::int8_t> small_;       // [rows, stride], int8
   std::span<double> inverse_lengths_;  // [rows], int8
   std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
-  std::span<std::uint64_t> first_;     // [rows, first_words]
-  std::span<std::uint64_t> rest_;      // [rows, sketch_words - first_words]
+  std::span<std::uint64_t> sketches_;  // [rows, words_]
+  std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side
 };
 
 }  // namespace seqloop

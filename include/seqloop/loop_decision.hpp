@@ -4,7 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "seqloop/candidate_ranges.hpp"
+#include "seqloop/candidate_runs.hpp"
+#include "seqloop/promising_rows.hpp"
 
 namespace seqloop {
 
@@ -25,11 +26,13 @@ class LoopDecision {
   /// @param scores [places], infinity for a row that no line fits
   /// @param keep_rival whether this frame's best rival stands in later, at frames whose candidates
   /// have none: D4 after a full search
+  /// @param promises rows that could not all be afforded: those that have no score may be rivals by
+  /// what their sketches tell
   /// @return the row with the lowest score, the lower row of equals; none when no row has a score
   /// Work: two passes over the candidates. Allocates: never.
-  [[nodiscard]] std::optional<BestRow> decide(std::span<const double> scores,
-                                              std::span<const CandidateRun> runs,
-                                              bool keep_rival) noexcept;
+  [[nodiscard]] std::optional<BestRow> decide(
+      std::span<const double> scores, std::span<const CandidateRun> runs, bool keep_rival,
+      std::span<const PromisingRows::Promise> promises) noexcept;
 
  private:
   std::size_t half_window_;

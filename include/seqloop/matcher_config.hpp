@@ -118,6 +118,10 @@ struct Capacity {
 /// the configuration says.
 [[nodiscard]] std::size_t distances_a_frame(const MatcherConfig& config) noexcept;
 
+/// The fewest places with which a map that forgets or thins out has candidates once it is full:
+/// those that are too new, and a line's rows.
+[[nodiscard]] std::size_t least_places(const MatcherConfig& config) noexcept;
+
 /// @return everything that is wrong with the configuration, with the flag's name first.
 [[nodiscard]] Faults validate(const MatcherConfig& config);
 [[nodiscard]] Faults validate(const Capacity& capacity);

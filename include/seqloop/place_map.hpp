@@ -67,6 +67,8 @@ class PlaceMap {
   /// The descriptors, by slot.
   [[nodiscard]] const DescriptorRows& rows() const noexcept { return rows_; }
 
+  [[nodiscard]] FullMap full_map() const noexcept { return full_map_; }
+
   /// Statistics of the drive that made the map; `frames() == 0` unless it has learnt.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 

@@ -45,7 +45,8 @@ class PlaceOrder {
   /// A new newest row. @return its slot; not when full
   std::size_t append() noexcept;
 
-  /// Takes a row out. @return its slot, free for the next one
+  /// Takes a row out; a new one comes before another may go.
+  /// @return its slot, free for the new one
   /// Work: moves the shorter of the two sides, 4 bytes a row. Allocates: never.
   std::size_t remove(std::size_t row) noexcept;
 

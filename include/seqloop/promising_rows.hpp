@@ -19,26 +19,29 @@ namespace seqloop {
 class PromisingRows {
  public:
   /// How many are remembered.
-  static constexpr std::size_t most = 8;
+  static constexpr std::size_t most = 16;
 
   /// Allocates: from the arena only.
   PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places);
 
-  /// The most pairs of sketches that one call compares.
-  [[nodiscard]] static std::size_t most_sketches(const MatcherConfig& config,
-                                                 std::size_t places) noexcept;
+  /// Pairs of sketches that one call compares.
+  struct Looks {
+    std::size_t scanned;  ///< by their first words, over the slice
+    std::size_t closely;  ///< by more of them
+  };
+  [[nodiscard]] static Looks most_looks(const MatcherConfig& config, std::size_t places) noexcept;
 
   /// Looks again at what is remembered, then at the next slice.
   /// @param rows   rows of the map that may be searched
   /// @param oldest the oldest frame that belongs together with the newest
-  /// @return pairs of sketches compared. Allocates: never.
-  std::size_t look(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
-                   std::uint64_t oldest) noexcept;
+  /// Work: what it returns. Allocates: never.
+  Looks look(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+             std::uint64_t oldest) noexcept;
 
-  /// A row that the newest frame may show.
+  /// A line that the frames of the window may have taken through the map.
   struct Promise {
-    std::uint32_t bits;  ///< that differ, summed over the frames that were looked at
-    std::size_t row;
+    double difference;   ///< about the mean difference along it, as its sketches tell; 0 .. 2
+    std::size_t centre;  ///< the row at the window's centre column
   };
 
   /// @return the most alike first
@@ -56,23 +59,40 @@ class PromisingRows {
   void restart() noexcept { count_ = 0; }
 
  private:
-  [[nodiscard]] std::span<const Promise> best_of_slice(const DifferenceSlices& slices,
-                                                       const PlaceMap& map,
-                                                       std::size_t rows) noexcept;
+  /// A row that the newest frame may show.
+  struct Alike {
+    std::uint32_t bits;  // that differ, summed over the frames that were looked at
+    std::size_t row;
+  };
+
+  [[nodiscard]] std::span<const Alike> best_of_slice(const DifferenceSlices& slices,
+                                                     const PlaceMap& map,
+                                                     std::size_t rows) noexcept;
   void look_closely(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
                     std::size_t row) noexcept;
-  void compare(const DifferenceSlices& slices, const PlaceMap& map, std::size_t back,
-               std::size_t first, std::span<std::uint32_t> bits) noexcept;
-  void remember(Promise promise) noexcept;
+  void scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
+            std::span<std::uint32_t> bits) noexcept;
+  [[nodiscard]] std::uint32_t differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
+                                             std::size_t rows, std::size_t back, std::size_t row,
+                                             std::size_t behind) noexcept;
+  [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept;
+  void remember(Alike alike) noexcept;
+  void weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+             std::uint64_t oldest) noexcept;
 
+  std::size_t ds_;
+  double vmin_;
+  double vmax_;
   std::size_t slice_;
   std::size_t near_;        // rows within which there is one promise
   std::size_t next_ = 0;    // row that the next slice begins at
   std::size_t frames_ = 0;  // newest frames that are looked at now
+  std::size_t scanned_ = 0;
   std::size_t sketches_ = 0;
   std::size_t count_ = 0;
-  std::span<Promise> promises_;    // [most + 1], best first
-  std::span<Promise> best_;        // of the slice, best first
+  std::span<Alike> remembered_;    // [most + 1], best first
+  std::span<Alike> best_;          // of the slice, best first
+  std::span<Promise> promises_;    // [most], what is remembered along the window, best first
   std::span<std::uint32_t> bits_;  // [slice] of the newest frame
 };
 

@@ -13,18 +13,14 @@ inline constexpr std::size_t sketch_words = 32;
 /// within the noise; this is cheap and among the best.
 inline constexpr std::size_t values_per_bit = 4;
 
-/// Keeps of a descriptor on which side of some planes it lies: every bit is whether the sum of
+/// Keeps of a descriptor on which side of some planes it lies: bit b is whether the sum of
 /// `values_per_bit` of its values, chosen by chance, half of them by chance subtracted, is above 0.
-/// Eight bits at a time take theirs from runs of eight values, so that these are read at once;
-/// which of them are subtracted is another chance for every bit. On Gardens Point and Nordland that
-/// finds as many loops as values chosen one by one.
-///
 /// The chance is fixed and the arithmetic whole: the same on every processor. The more two
 /// descriptors are alike, the fewer bits differ, about words * 64 * angle / pi; so descriptors
 /// should be standardised, or all would lie on the same sides.
 /// @param descriptor [D] D from 1 up to most_small_values; zero padding would dilute the sums
 /// @param out        [words] written; a longer sketch begins with the shorter one
-/// Work: words * 64 * values_per_bit adds, eight at a time, whatever D is. Allocates: never.
+/// Work: words * 64 * values_per_bit adds, whatever D is. Allocates: never.
 void sketch(std::span<const std::int8_t> descriptor, std::span<std::uint64_t> out) noexcept;
 
 }  // namespace seqloop

@@ -45,9 +45,14 @@ class Trajectories {
     return offsets_.subspan(line * window(), window());
   }
 
-  /// Lowest and highest offset of any line at column i.
-  [[nodiscard]] std::int32_t lowest(std::size_t i) const noexcept;
-  [[nodiscard]] std::int32_t highest(std::size_t i) const noexcept;
+  /// Lowest and highest offset of any line at column i. Offsets are monotone in m: left of the
+  /// centre the fastest line is the lowest, right of it the slowest.
+  [[nodiscard]] std::int32_t lowest(std::size_t i) const noexcept {
+    return offsets(i < centre() ? count() - 1 : 0)[i];
+  }
+  [[nodiscard]] std::int32_t highest(std::size_t i) const noexcept {
+    return offsets(i < centre() ? 0 : count() - 1)[i];
+  }
 
  private:
   std::size_t ds_;

@@ -10,7 +10,10 @@ std::string label(const MatcherConfig& config, std::uint32_t seed) {
   return "seed " + std::to_string(seed) + ", ds " + std::to_string(config.sequence_length) +
          ", method " + std::to_string(static_cast<int>(config.candidates)) + ", k " +
          std::to_string(config.k) + ", num " + std::to_string(config.num) + ", rwindow " +
-         std::to_string(config.rwindow) + ", reinit " + std::to_string(config.reinit);
+         std::to_string(config.rwindow) + ", reinit " + std::to_string(config.reinit) +
+         ", arithmetic " + std::to_string(static_cast<int>(config.arithmetic)) + ", v " +
+         std::to_string(config.vmin) + " to " + std::to_string(config.vmax) + ", exclude " +
+         std::to_string(config.exclude);
 }
 
 void expect_same(const oracle::Vectors& reference, const oracle::Vectors& query,
@@ -25,7 +28,11 @@ void expect_same(const oracle::Vectors& reference, const oracle::Vectors& query,
     const Match& match = *report.match;
     ASSERT_EQ(static_cast<std::int64_t>(*report.frame), answer.query);
     ASSERT_EQ(static_cast<std::int64_t>(match.place), answer.match) << "frame " << answer.query;
-    EXPECT_NEAR(match.score, answer.score, 1e-5);
+    if (config.arithmetic == Arithmetic::float32) {
+      EXPECT_NEAR(match.score, answer.score, 1e-5);
+    } else {
+      ASSERT_EQ(match.score, static_cast<float>(answer.score)) << "frame " << answer.query;
+    }
     if (std::isnan(answer.uniqueness)) {
       EXPECT_TRUE(std::isnan(match.uniqueness));
     } else if (std::isinf(answer.uniqueness)) {
@@ -153,6 +160,65 @@ TEST_P(DetectorOracle, AnswersNothingWhenNoLineFits) {
     expect_same(oracle::drive(3, places, 8), query, paper(GetParam(), 20), 3, answered);
     EXPECT_EQ(answered == 0, places < 17) << places;
   }
+}
+
+/// A drive that stands still for a while, so that equal places come one after the other.
+oracle::Vectors halting_drive(std::uint32_t seed, std::size_t frames, float noise) {
+  oracle::Vectors drive = oracle::drive(seed, frames, 24, noise);
+  const std::size_t halt = frames / 3;
+  for (std::size_t frame = halt; frame < halt + frames / 4; ++frame) drive[frame] = drive[halt];
+  return drive;
+}
+
+// In whole numbers the detector and the definitions agree to the last bit.
+TEST_P(DetectorOracle, AnswersInWholeNumbersExactlyAsDefined) {
+  std::size_t answered = 0;
+  std::uint32_t seed = 400;
+  for (const Arithmetic arithmetic : {Arithmetic::int8, Arithmetic::sketch}) {
+    for (const std::size_t ds : {0U, 1U, 2U, 5U, 12U, 20U, 41U}) {
+      for (const auto& [vmin, vmax] :
+           {std::pair{0.8, 1.2}, std::pair{0.0, 2.0}, std::pair{1.0, 1.0}, std::pair{0.5, 3.0}}) {
+        for (const std::size_t places : {1U, 2U, 127U, 128U, 129U}) {
+          MatcherConfig config = paper(GetParam(), ds);
+          config.arithmetic = arithmetic;
+          config.vmin = vmin;
+          config.vmax = vmax;
+          config.reinit = 40;
+          config.rwindow = seed % 12;
+          expect_same(halting_drive(seed, places, 0.3F), halting_drive(seed, 50, 0.4F), config,
+                      seed, answered);
+          if (HasFatalFailure()) return;
+          ++seed;
+        }
+        MatcherConfig config = paper(GetParam(), ds, Use::close_loops);
+        config.arithmetic = arithmetic;
+        config.vmin = vmin;
+        config.vmax = vmax;
+        config.reinit = 40;
+        config.exclude = 1 + seed % 40;
+        oracle::Vectors laps = halting_drive(seed, 70, 0.2F);
+        for (const auto& seen : halting_drive(seed, 70, 0.3F)) laps.push_back(seen);
+        expect_same({}, laps, config, seed, answered);
+        if (HasFatalFailure()) return;
+        ++seed;
+      }
+    }
+  }
+  EXPECT_GT(answered, 9'000U);
+}
+
+TEST_P(DetectorOracle, SearchesLargeMapsInWholeNumbersExactlyAsDefined) {
+  std::size_t answered = 0;
+  for (const Arithmetic arithmetic : {Arithmetic::int8, Arithmetic::sketch}) {
+    for (const std::size_t ds : {0U, 12U, 41U}) {
+      MatcherConfig config = paper(GetParam(), ds);
+      config.arithmetic = arithmetic;
+      expect_same(halting_drive(700, 300, 0.3F), halting_drive(700, 80, 0.4F), config, 700,
+                  answered);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_EQ(answered, 2 * (80 + 68 + 39U));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, DetectorOracle,

@@ -15,12 +15,6 @@
 namespace seqloop {
 namespace {
 
-/// Heap-backed arena for a component under test.
-struct TestArena {
-  ArenaMemory memory{std::size_t{1} << 24U, {}};
-  Arena arena{memory.span()};
-};
-
 TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
   std::mt19937 random(11);
   std::normal_distribution<float> normal;
@@ -434,6 +428,12 @@ TEST(CandidateRanges, ClipUniteAndRankAsAlgorithmFourSays) {
   scores[12] = 0.2;
   ranges.update(scores, united.runs(), 10, 1.0);
   EXPECT_EQ(runs(20), (Runs{{8, 15}})) << "fewer rows than K, and they overlap";
+  ranges.removed(11);
+  EXPECT_EQ(runs(20), (Runs{{8, 14}})) << "the row behind the one that went is counted one lower";
+  ranges.removed(0);
+  EXPECT_EQ(runs(20), (Runs{{7, 13}}));
+  ranges.skip(4);
+  EXPECT_EQ(runs(20), (Runs{{11, 17}}));
   ranges.update(scores, united.runs(), std::nullopt, 1.0);
   EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "after a frame without an answer";
   EXPECT_EQ(runs(0), Runs{}) << "an empty map";

@@ -10,6 +10,12 @@
 
 namespace seqloop {
 
+/// Heap-backed arena for a component under test.
+struct TestArena {
+  ArenaMemory memory{std::size_t{1} << 24U, {}};
+  Arena arena{memory.span()};
+};
+
 /// A configuration that the paper's letter asks for.
 inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use::localise) {
   MatcherConfig config;

@@ -65,6 +65,36 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
   }
 }
 
+TEST_F(NoAllocation, WhenAFullMapMakesRoom) {
+  const oracle::Vectors lap = oracle::drive(32, 150, 40, 0.2F);
+  for (const Arithmetic arithmetic : {Arithmetic::float32, Arithmetic::int8, Arithmetic::sketch}) {
+    for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+      for (const bool relocalising : {false, true}) {
+        MatcherConfig config;
+        config.arithmetic = arithmetic;
+        config.full_map = full_map;
+        config.relocalising.on = relocalising;
+        config.use = Use::close_loops;
+        config.exclude = 30;
+        PlaceMap map(config, {180, 40});
+        Detector detector(config, map);
+        std::size_t matched = 0;
+        const AllocationGuard guard;
+        for (int repeat = 0; repeat < 3; ++repeat) {
+          for (const auto& descriptor : lap) {
+            matched += detector.step(descriptor).match.has_value();
+          }
+          matched += detector.step({}).match.has_value();
+          detector.skip(7);
+        }
+        EXPECT_EQ(guard.count(), 0U);
+        EXPECT_GT(matched, 100U);
+        EXPECT_FALSE(map.order().straight());
+      }
+    }
+  }
+}
+
 TEST_F(NoAllocation, InRemovingComponents) {
   std::vector<std::uint8_t> pictures(10'000);
   for (std::size_t i = 0; i < pictures.size(); ++i)

@@ -1,11 +1,16 @@
 #include "core/oracle.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
+
+#include "seqloop/fixed_distance.hpp"
+#include "seqloop/quantised.hpp"
 
 namespace seqloop::oracle {
 namespace {
@@ -28,6 +33,10 @@ double distance(Difference kind, const std::vector<float>& a, const std::vector<
   return std::sqrt(sum);
 }
 
+std::vector<Forms> forms(const Vectors& descriptors) {
+  return {descriptors.begin(), descriptors.end()};
+}
+
 struct Line {
   double score = none;
   Int m = 0;
@@ -37,19 +46,18 @@ class Matcher {
  public:
   Matcher(const Vectors& reference, const Vectors& query, const MatcherConfig& config)
       : closing_(reference.empty()),
-        r_(closing_ ? query : reference),
-        q_(query),
+        r_(forms(closing_ ? query : reference)),
+        q_(forms(query)),
         config_(config),
         ds_(static_cast<Int>(config.sequence_length)),
         h_(ds_ / 2),
+        scale_(1.0 / (unit(config) * static_cast<double>(ds_ + 1))),
         k_(static_cast<Int>(config.candidates == Candidates::ranges     ? config.k
                             : config.candidates == Candidates::adaptive ? config.initial_k
                                                                         : 0)) {
-    for (const auto& row : r_) {
+    for (const Forms& row : r_) {
       d_.emplace_back();
-      for (const auto& column : q_) {
-        d_.back().push_back(distance(config.difference, row, column));
-      }
+      for (const Forms& column : q_) d_.back().push_back(difference(config, row, column));
     }
     if (config.enhance) enhance();
   }
@@ -89,18 +97,11 @@ class Matcher {
     }
   }
 
-  Int offset(Int m, Int i) const {
-    if (ds_ == 0) return 0;
-    return static_cast<Int>(std::floor(static_cast<long double>(2 * m * (i - h_) + ds_) /
-                                       static_cast<long double>(2 * ds_)));
-  }
+  Int offset(Int m, Int i) const { return line_offset(m, i, ds_); }
 
   Line score(Int n, Int q, Int rows) const {
     Line best;
-    for (Int m = 0; m <= 20 * ds_; ++m) {
-      const double v = static_cast<double>(m);
-      const auto ds = static_cast<double>(ds_);
-      if (v < config_.vmin * ds - 1e-9 || v > config_.vmax * ds + 1e-9) continue;
+    for (const Int m : velocities_) {
       double sum = 0.0;
       for (Int i = 0; i <= ds_; ++i) {
         const Int row = q + offset(m, i);
@@ -110,7 +111,7 @@ class Matcher {
         }
         sum += d_[static_cast<std::size_t>(row)][static_cast<std::size_t>(n - h_ + i)];
       }
-      const double mean = sum / static_cast<double>(ds_ + 1);
+      const double mean = sum * scale_;
       if (mean < best.score) best = {mean, m};
     }
     return best;
@@ -118,12 +119,12 @@ class Matcher {
 
   double change_degree(Int n) const {
     if (n < 11) return 1.0;
-    const auto q = [&](Int i) { return q_[static_cast<std::size_t>(i)]; };
+    const auto q = [&](Int i) -> const Forms& { return q_[static_cast<std::size_t>(i)]; };
     double above = 0.0;
     double below = 0.0;
     for (Int i = n - 10; i <= n - 1; ++i) {
-      above += distance(config_.difference, q(n), q(i));
-      below += distance(config_.difference, q(n - 1), q(i - 1));
+      above += difference(config_, q(n), q(i)) / unit(config_);
+      below += difference(config_, q(n - 1), q(i - 1)) / unit(config_);
     }
     if (below == 0.0) return above == 0.0 ? 1.0 : none;
     return above / below;
@@ -203,11 +204,13 @@ class Matcher {
   }
 
   bool closing_;
-  const Vectors& r_;
-  const Vectors& q_;
+  std::vector<Forms> r_;
+  std::vector<Forms> q_;
   const MatcherConfig& config_;
+  std::vector<Int> velocities_ = line_velocities(config_);
   Int ds_;
   Int h_;
+  double scale_;
   Int k_;
   Int matched_ = 0;
   double last_full_rival_ = none;
@@ -217,6 +220,60 @@ class Matcher {
 };
 
 }  // namespace
+
+Forms::Forms(std::vector<float> descriptor)
+    : values(std::move(descriptor)), bytes(values.size()), sketch{} {
+  inverse_length = seqloop::inverse_length(quantise(values, bytes).squared_norm);
+  seqloop::sketch(bytes, sketch);
+}
+
+double difference(const MatcherConfig& config, const Forms& a, const Forms& b) {
+  switch (config.arithmetic) {
+    case Arithmetic::float32:
+      return distance(config.difference, a.values, b.values);
+    case Arithmetic::int8: {
+      std::int32_t dot = 0;
+      for (std::size_t d = 0; d < a.bytes.size(); ++d) dot += a.bytes[d] * b.bytes[d];
+      return fixed_distance(dot, a.inverse_length, b.inverse_length);
+    }
+    case Arithmetic::sketch: {
+      std::size_t bits = 0;
+      for (std::size_t word = 0; word < sketch_words; ++word) {
+        bits += std::bitset<64>(a.sketch[word] ^ b.sketch[word]).count();
+      }
+      return static_cast<double>(bits);
+    }
+  }
+  return none;
+}
+
+double unit(const MatcherConfig& config) {
+  switch (config.arithmetic) {
+    case Arithmetic::float32:
+      return 1.0;
+    case Arithmetic::int8:
+      return 32'767.0;
+    case Arithmetic::sketch:
+      return 1'024.0;
+  }
+  return 0.0;
+}
+
+Int line_offset(Int m, Int i, Int ds) {
+  if (ds == 0) return 0;
+  return static_cast<Int>(std::floor(static_cast<long double>(2 * m * (i - ds / 2) + ds) /
+                                     static_cast<long double>(2 * ds)));
+}
+
+std::vector<Int> line_velocities(const MatcherConfig& config) {
+  const auto ds = static_cast<double>(config.sequence_length);
+  std::vector<Int> velocities;
+  for (Int m = 0; m <= 20 * static_cast<Int>(config.sequence_length); ++m) {
+    const auto v = static_cast<double>(m);
+    if (v >= config.vmin * ds - 1e-9 && v <= config.vmax * ds + 1e-9) velocities.push_back(m);
+  }
+  return velocities;
+}
 
 std::vector<Answer> match(const Vectors& reference, const Vectors& query,
                           const MatcherConfig& config) {

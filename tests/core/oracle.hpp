@@ -1,14 +1,38 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "seqloop/matcher_config.hpp"
+#include "seqloop/sketch.hpp"
 
 namespace seqloop::oracle {
 
 using Vectors = std::vector<std::vector<float>>;
+
+/// A descriptor in every form in which it can be compared.
+struct Forms {
+  explicit Forms(std::vector<float> descriptor);
+
+  std::vector<float> values;
+  std::vector<std::int8_t> bytes;
+  double inverse_length;
+  std::array<std::uint64_t, sketch_words> sketch;
+};
+
+/// The difference of two in the configuration's arithmetic: a whole number but for `float32`.
+double difference(const MatcherConfig& config, const Forms& a, const Forms& b);
+
+/// What a difference of 1 is.
+double unit(const MatcherConfig& config);
+
+/// Rows that the line of velocity m / ds lies above its centre row at column i (D2).
+std::int64_t line_offset(std::int64_t m, std::int64_t i, std::int64_t ds);
+
+/// The integers m of all lines, slowest first (D2).
+std::vector<std::int64_t> line_velocities(const MatcherConfig& config);
 
 /// One answered frame as the definitions give it.
 struct Answer {

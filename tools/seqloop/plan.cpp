@@ -47,7 +47,8 @@ void plan(const PlanSettings& settings, Faults faults) {
   fmt::print("{:>16}  line sums, of {} differences each\n", most.line_sums,
              config.sequence_length + 1);
   if (!relocalises(config)) return;
-  fmt::print("{:>16}  pairs of sketches, 32 bytes each\n", most.sketches);
+  fmt::print("{:>16}  places looked at by 32 bytes of their sketches\n", most.scanned);
+  fmt::print("{:>16}  pairs of sketches, 128 bytes each\n", most.sketches);
   fmt::print("{:>16}  frames until the whole map was looked at\n",
              (capacity.places + config.relocalising.slice - 1) / config.relocalising.slice);
 }

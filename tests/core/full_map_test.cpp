@@ -1,0 +1,234 @@
+// What becomes of places when the map is full, and what is answered from then on.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "core/matcher.hpp"
+#include "core/shown_drive.hpp"
+#include "seqloop/difference.hpp"
+
+namespace seqloop {
+namespace {
+
+/// How a detector can be set up to close loops.
+struct Kind {
+  Arithmetic arithmetic;
+  Candidates candidates;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << "arithmetic " << static_cast<int>(kind.arithmetic) << ", candidates "
+       << static_cast<int>(kind.candidates);
+}
+
+class FullMaps : public testing::TestWithParam<Kind> {
+ protected:
+  [[nodiscard]] static MatcherConfig closing(FullMap full_map) {
+    MatcherConfig config;
+    config.arithmetic = GetParam().arithmetic;
+    config.candidates = GetParam().candidates;
+    config.use = Use::close_loops;
+    config.exclude = 30;
+    config.full_map = full_map;
+    return config;
+  }
+};
+
+/// The same way several times over, each time a little different.
+oracle::Vectors laps(std::size_t count, std::size_t frames) {
+  oracle::Vectors laps;
+  for (std::size_t lap = 0; lap < count; ++lap) {
+    for (auto& seen : oracle::drive(11, frames, 64, 0.2F + 0.01F * static_cast<float>(lap))) {
+      laps.push_back(std::move(seen));
+    }
+  }
+  return laps;
+}
+
+TEST_P(FullMaps, ForgettingTheOldestFindsTheNewestPlacesByTheirNumbers) {
+  constexpr std::size_t lap = 150;
+  constexpr std::size_t capacity = 200;
+  const MatcherConfig config = closing(FullMap::forget_oldest);
+  PlaceMap map(config, {capacity, 64});
+  Detector detector(config, map);
+  std::size_t right = 0;
+  std::size_t answers = 0;
+  for (const auto& seen : laps(5, lap)) {
+    const FrameReport report = detector.step(seen);
+    EXPECT_FALSE(report.map_full);
+    if (!report.match) continue;
+    const std::size_t frames = static_cast<std::size_t>(report.newest) + 1;
+    EXPECT_GE(report.match->place + capacity, frames) << "only the newest places are there";
+    EXPECT_LT(report.match->place + config.exclude, *report.frame);
+    EXPECT_EQ(map.order().number(0), frames - std::min(frames, capacity));
+    // Just after a lap began, the window still holds the end of the one before.
+    const std::size_t at = *report.frame % lap;
+    if (report.gate != Gate::match || *report.frame < lap || at < 15 || at > 140) continue;
+    ++answers;
+    right += report.match->place == *report.frame - lap;
+    EXPECT_NEAR(static_cast<double>(report.match->place), static_cast<double>(*report.frame - lap),
+                2.0);
+  }
+  EXPECT_GT(answers, 4 * (140 - 15) - 40U);
+  EXPECT_GT(right, answers - answers / 20);
+}
+
+TEST_P(FullMaps, RefusingKeepsTheFirstPlaces) {
+  constexpr std::size_t lap = 150;
+  const MatcherConfig config = closing(FullMap::refuse);
+  PlaceMap map(config, {lap, 64});
+  Detector detector(config, map);
+  std::size_t right = 0;
+  for (const auto& seen : laps(4, lap)) {
+    const FrameReport report = detector.step(seen);
+    EXPECT_EQ(report.map_full, report.newest >= lap);
+    right += report.match && *report.frame >= lap && report.match->place == *report.frame % lap;
+  }
+  EXPECT_TRUE(map.order().straight());
+  EXPECT_GT(right, 3 * (lap - 30));
+}
+
+/// A drive that halts: where on the way each of its frames is.
+struct HaltingDrive {
+  oracle::Vectors seen;
+  std::vector<std::size_t> way;
+};
+
+HaltingDrive halting_drive(std::size_t length, std::size_t halt_every, std::size_t halt) {
+  const oracle::Vectors way = oracle::drive(12, length, 64, 0.2F);
+  std::mt19937 random(12);
+  std::normal_distribution<float> noise(0.0F, 0.01F);
+  HaltingDrive drive;
+  for (std::size_t at = 0; at < length; ++at) {
+    const std::size_t frames = at % halt_every == halt_every - 1 ? halt : 1;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+      std::vector<float> seen = way[at];
+      for (float& value : seen) value += noise(random);
+      normalise(seen);
+      drive.seen.push_back(seen);
+      drive.way.push_back(at);
+    }
+  }
+  return drive;
+}
+
+TEST_P(FullMaps, ThinningKeepsTheWayAndDropsTheHalts) {
+  constexpr std::size_t length = 300;
+  constexpr std::size_t capacity = 700;
+  MatcherConfig config = closing(FullMap::thin);
+  HaltingDrive drive = halting_drive(length, 30, 71);  // 700 frames of 1,000 stand still
+  ASSERT_EQ(drive.seen.size(), 1'000U);
+  PlaceMap map(config, {capacity, 64});
+  Detector detector(config, map);
+  for (const auto& seen : drive.seen) EXPECT_FALSE(detector.step(seen).map_full);
+
+  std::set<std::size_t> kept;
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    kept.insert(drive.way[static_cast<std::size_t>(map.order().number(row))]);
+  }
+  std::printf("kept %zu of %zu\n", kept.size(), length);
+  EXPECT_EQ(map.size(), capacity);
+  EXPECT_GE(kept.size(), length * 95 / 100);
+
+  // Again, without halts, while the map thins out further.
+  std::size_t right = 0;
+  std::size_t answers = 0;
+  const oracle::Vectors again = oracle::drive(12, length, 64, 0.4F);
+  for (std::size_t at = 0; at < length; ++at) {
+    const FrameReport report = detector.step(again[at]);
+    drive.way.push_back(at);
+    if (report.gate != Gate::match || at < 30) continue;
+    ++answers;
+    const std::size_t found = drive.way[report.match->place];
+    const std::size_t truth = drive.way[static_cast<std::size_t>(*report.frame)];
+    right += std::max(found, truth) - std::min(found, truth) <= 2;
+  }
+  std::printf("%zu of %zu right\n", right, answers);
+  EXPECT_GT(answers, 200U);
+  EXPECT_GE(right, answers * 95 / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, FullMaps,
+                         testing::Values(Kind{Arithmetic::float32, Candidates::all},
+                                         Kind{Arithmetic::float32, Candidates::adaptive},
+                                         Kind{Arithmetic::int8, Candidates::all},
+                                         Kind{Arithmetic::int8, Candidates::ranges},
+                                         Kind{Arithmetic::int8, Candidates::adaptive},
+                                         Kind{Arithmetic::sketch, Candidates::all},
+                                         Kind{Arithmetic::sketch, Candidates::adaptive}));
+
+TEST(FullMap, LoopsOntoTheWindowItselfAreScoredAsDefinedWhenPlacesGo) {
+  for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+    for (const std::size_t exclude : {1U, 5U, 9U, 10U}) {
+      MatcherConfig config = paper(Candidates::all, 20, Use::close_loops);
+      config.exclude = exclude;
+      config.full_map = full_map;
+      PlaceMap map(config, {60, 16});
+      Detector detector(config, map);
+      oracle::ShownDrive shown(config, map, {});
+      const Work most = Detector::most_work(config, {60, 16});
+      std::size_t answers = 0;
+      for (const auto& descriptor : oracle::drive(5, 200, 16)) {
+        const FrameReport report = detector.step(descriptor);
+        shown.step(descriptor);
+        EXPECT_LE(report.work.distances, most.distances) << "exclude " << exclude;
+        if (report.match) {
+          ++answers;
+          const auto scored = shown.score(*shown.row_of(report.match->place));
+          ASSERT_TRUE(scored);
+          ASSERT_NEAR(report.match->score, scored->score, 1e-5) << "exclude " << exclude;
+        }
+        if (report.newest % 20 == 7) {
+          detector.skip(15);
+          shown.skip(15);
+        }
+      }
+      EXPECT_GT(answers, 100U);
+    }
+  }
+}
+
+// Where every place is as near to the next as any other, none of them may lose all its neighbours.
+TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
+  constexpr std::size_t capacity = 200;
+  MatcherConfig config = paper(Candidates::all, 0, Use::close_loops);
+  config.exclude = 1;
+  config.full_map = FullMap::thin;
+  PlaceMap map(config, {capacity, 2});
+  Detector detector(config, map);
+  for (std::size_t frame = 0; frame < 3 * capacity; ++frame) {
+    const float angle = 0.002F * static_cast<float>(frame);
+    static_cast<void>(detector.step(std::vector{std::cos(angle), std::sin(angle)}));
+  }
+  std::uint64_t widest = 0;
+  for (std::size_t row = 1; row < capacity; ++row) {
+    widest = std::max(widest, map.order().number(row) - map.order().number(row - 1));
+  }
+  EXPECT_LE(widest, 9U);
+}
+
+// Places that are no candidates yet do not go.
+TEST(FullMap, AMapWithoutRoomForCandidatesIsRefused) {
+  for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+    MatcherConfig config = paper(Candidates::adaptive, 5, Use::close_loops);
+    config.relocalising.on = true;
+    config.exclude = 30;
+    config.full_map = full_map;
+    const std::size_t least = least_places(config);
+    PlaceMap small(config, {least - 1, 16});
+    EXPECT_THROW(Detector(config, small), SetupError);
+    PlaceMap map(config, {least, 16});
+    Detector detector(config, map);
+    std::size_t answered = 0;
+    for (const auto& descriptor : oracle::drive(5, 100, 16)) {
+      const FrameReport report = detector.step(descriptor);
+      EXPECT_FALSE(report.map_full);
+      answered += report.newest >= least && report.match.has_value();
+    }
+    EXPECT_GT(answered, 50U);
+  }
+}
+
+}  // namespace
+}  // namespace seqloop

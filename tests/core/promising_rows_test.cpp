@@ -1,0 +1,255 @@
+// The whole map is in sight: how soon each row is looked at, and how soon a carried robot is found.
+#include "seqloop/promising_rows.hpp"
+
+#include <algorithm>
+#include <random>
+#include <tuple>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+MatcherConfig sketched(Use use, std::size_t slice) {
+  MatcherConfig config = paper(Candidates::adaptive, 0, use);
+  config.arithmetic = Arithmetic::int8;
+  config.relocalising.on = true;
+  config.relocalising.slice = slice;
+  return config;
+}
+
+bool promised(const PromisingRows& promising, std::size_t row) {
+  return std::ranges::any_of(promising.promises(), [&](const PromisingRows::Promise& promise) {
+    return promise.centre == row && promise.difference == 0.0;
+  });
+}
+
+TEST(PromisingRows, LookAtEveryRowOnceInASliceLongRound) {
+  constexpr std::size_t places = 100;
+  const oracle::Vectors drive = oracle::drive(1, places, 32);
+  for (const std::size_t slice : {2U, 7U, 33U, 50U, 99U, 100U, 4096U}) {
+    const MatcherConfig config = sketched(Use::localise, slice);
+    const PlaceMap map = map_of(drive, config);
+    TestArena memory;
+    DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+    PromisingRows promising(memory.arena, config, places);
+    const std::size_t round = (places + slice - 1) / slice;
+    for (std::size_t row = 0; row < places; ++row) {
+      slices.push(drive[row]);
+      promising.restart();
+      for (std::size_t frame = 0; frame < round; ++frame) {
+        const auto looks = promising.look(slices, map, places, slices.frames() - 1);
+        EXPECT_LE(looks.scanned, PromisingRows::most_looks(config, places).scanned);
+        EXPECT_LE(looks.closely, PromisingRows::most_looks(config, places).closely);
+      }
+      EXPECT_TRUE(promised(promising, row)) << "row " << row << ", slice " << slice;
+    }
+  }
+}
+
+// While the map grows by a row a frame, or loses one, so many rows less of a slice are gained.
+std::size_t round_of_a_moving_map(std::size_t places, std::size_t slice) {
+  return (places + slice - 2) / (slice - 1) + 1;
+}
+
+TEST(PromisingRows, LookAtEveryRowWhileTheMapGrows) {
+  constexpr std::size_t places = 300;
+  const oracle::Vectors drive = oracle::drive(2, places, 32);
+  for (const std::size_t slice : {2U, 7U, 33U, 64U}) {
+    const MatcherConfig config = sketched(Use::localise, slice);
+    const PlaceMap map = map_of(drive, config);
+    for (std::size_t row = 0; row < 80; row += 3) {
+      TestArena memory;
+      DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+      PromisingRows promising(memory.arena, config, places);
+      slices.push(drive[row]);
+      std::size_t rows = 80;
+      for (std::size_t frame = 0; frame < row; ++frame) {  // wherever the slices have come to
+        static_cast<void>(promising.look(slices, map, rows++, 0));
+      }
+      promising.restart();
+      const std::size_t round = round_of_a_moving_map(rows, slice);
+      for (std::size_t frame = 0; frame < round; ++frame) {
+        static_cast<void>(promising.look(slices, map, std::min(rows++, places), 0));
+      }
+      EXPECT_TRUE(promised(promising, row)) << "row " << row << ", slice " << slice;
+    }
+  }
+}
+
+TEST(PromisingRows, LookAtEveryRowWhilePlacesGo) {
+  constexpr std::size_t places = 60;
+  const oracle::Vectors drive = oracle::drive(3, 400, 32);
+  for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+    for (const std::size_t slice : {7U, 16U, 59U, 60U}) {
+      MatcherConfig config = sketched(Use::close_loops, slice);
+      config.full_map = full_map;
+      config.exclude = 1;
+      PlaceMap map(config, {places, 32});
+      TestArena memory;
+      DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+      PromisingRows promising(memory.arena, config, places);
+      const auto take = [&](std::size_t frame) {
+        slices.push(drive[frame]);
+        const auto taken = map.take(slices.queries(), slices.row_of(slices.frames() - 1), 1);
+        if (taken.removed) promising.removed(*taken.removed);
+      };
+      std::size_t frame = 0;
+      for (; frame < places; ++frame) take(frame);
+      const std::size_t round = round_of_a_moving_map(places, slice);
+      std::size_t found = 0;
+      for (std::size_t sought = 0; frame + round < drive.size(); ++sought) {
+        const std::uint64_t number = map.order().number((7 * sought) % places);
+        promising.restart();
+        bool seen = false;
+        bool gone = false;
+        for (std::size_t look = 0; look < round && !seen; ++look) {
+          take(frame++);
+          // Compared as if the robot were at the place again.
+          slices.push(drive[static_cast<std::size_t>(number)]);
+          static_cast<void>(promising.look(slices, map, places, slices.frames() - 1));
+          std::size_t row = 0;
+          while (row < places && map.order().number(row) != number) ++row;
+          gone = row == places;
+          seen = !gone && promised(promising, row);
+        }
+        EXPECT_TRUE(seen || gone) << "slice " << slice << ", number " << number;
+        found += seen;
+      }
+      EXPECT_GT(found, 15U);
+    }
+  }
+}
+
+TEST(PromisingRows, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
+  const oracle::Vectors drive = oracle::drive(4, 100, 32);
+  const MatcherConfig config = sketched(Use::localise, 2);
+  const PlaceMap map = map_of(drive, config);
+  TestArena memory;
+  DifferenceSlices slices(memory.arena, config, 12, {100, 32});
+  PromisingRows promising(memory.arena, config, 100);
+  slices.push(drive[40]);
+  for (std::size_t row = 0; row <= 40; row += 2) {
+    static_cast<void>(promising.look(slices, map, 100, 0));
+  }
+  ASSERT_TRUE(promised(promising, 40));
+  promising.removed(99);
+  for (int place = 0; place < 10; ++place) promising.removed(0);
+  promising.skip(9);
+  // 40 less 10 that went, 9 frames and this one further on; the slice is far from it.
+  static_cast<void>(promising.look(slices, map, 100, 0));
+  EXPECT_TRUE(promised(promising, 40));
+  promising.restart();
+  EXPECT_TRUE(promising.promises().empty());
+}
+
+/// How many frames after being put down a robot is found: from then on its answers stay right.
+struct Found {
+  std::vector<std::size_t> after;  ///< frames, sorted
+  std::size_t lost = 0;
+};
+
+constexpr std::uint32_t seed = 5;
+constexpr std::size_t places = 20'000;
+
+/// The same way twice.
+const oracle::Vectors& seen_before() {
+  static const oracle::Vectors drive = oracle::drive(seed, places, 128, 0.2F);
+  return drive;
+}
+const oracle::Vectors& seen_again() {
+  static const oracle::Vectors drive = oracle::drive(seed, places, 128, 1.0F);
+  return drive;
+}
+
+/// @param speed rows a frame   @param told whether the detector hears of it (`skip`)
+Found carry_about(const MatcherConfig& config, double speed, bool told) {
+  constexpr std::size_t stay = 60;
+  PlaceMap map = map_of(seen_before(), config);
+  Detector detector(config, map);
+  std::mt19937 random(seed);
+  Found found;
+  for (int carried = 0; carried < 50; ++carried) {
+    const std::size_t begin = random() % (places - 4 * stay);
+    if (told) detector.skip(100'000);
+    std::size_t after = 0;
+    for (std::size_t frame = 0; frame < stay; ++frame) {
+      const std::size_t row = begin + static_cast<std::size_t>(static_cast<double>(frame) * speed);
+      const FrameReport report = detector.step(seen_again()[row]);
+      const std::size_t head = report.match ? report.match->head : places * 2;
+      const bool right = std::max(head, row) - std::min(head, row) <= 2;
+      if (!right) after = frame + 1;
+    }
+    if (after == stay) {
+      ++found.lost;
+    } else {
+      found.after.push_back(after + 1);
+    }
+  }
+  std::ranges::sort(found.after);
+  return found;
+}
+
+class Carried : public testing::TestWithParam<Candidates> {};
+
+TEST_P(Carried, IsFoundAgainSoonAtAnySpeed) {
+  for (const bool told : {false, true}) {
+    for (const auto& [vmin, vmax, speed] : {std::tuple{0.8, 1.2, 1.0}, std::tuple{0.8, 1.2, 0.8},
+                                            std::tuple{0.0, 3.0, 0.0}, std::tuple{0.0, 3.0, 3.0}}) {
+      MatcherConfig config;
+      config.candidates = GetParam();
+      config.vmin = vmin;
+      config.vmax = vmax;
+      const Found found = carry_about(config, speed, told);
+      std::printf(
+          "speed %.1f of %.1f to %.1f, %s: found after %zu (least), %zu (median), %zu "
+          "(most) frames, %zu of 50 not\n",
+          speed, vmin, vmax, told ? "told" : "not told", found.after.front(),
+          found.after[found.after.size() / 2], found.after.back(), found.lost);
+      const std::size_t slices =
+          (places + config.relocalising.slice - 1) / config.relocalising.slice;
+      EXPECT_EQ(found.lost, 0U);
+      EXPECT_LE(found.after.back(), config.sequence_length + 1 + slices);
+    }
+  }
+}
+
+/// Unit vectors that have nothing to do with each other.
+oracle::Vectors unlike(std::size_t count) {
+  oracle::Vectors all;
+  for (std::size_t place = 0; place < count; ++place) {
+    all.push_back(oracle::drive(1'000 + static_cast<std::uint32_t>(place), 1, 64).front());
+  }
+  return all;
+}
+
+// Where no place looks like those beside it, only the right rows help.
+TEST_P(Carried, IsFoundWhereNeighboursAreNothingAlike) {
+  const oracle::Vectors drive = unlike(2'000);
+  for (const auto& [vmin, vmax, speed] :
+       {std::tuple{0.8, 1.2, 1U}, std::tuple{0.0, 3.0, 1U}, std::tuple{0.0, 3.0, 3U}}) {
+    MatcherConfig config;
+    config.candidates = GetParam();
+    config.vmin = vmin;
+    config.vmax = vmax;
+    PlaceMap map = map_of(drive, config);
+    Detector detector(config, map);
+    for (const std::size_t begin : {1'000U, 200U, 1'700U}) {
+      detector.skip(1'000);
+      for (std::size_t frame = 0; frame < 60; ++frame) {
+        const std::size_t row = begin + frame * speed;
+        const FrameReport report = detector.step(drive[row]);
+        // At the speed of the map with the first full window, otherwise a frame later.
+        if (frame < config.sequence_length + (speed == 1 ? 0 : 1)) continue;
+        ASSERT_TRUE(report.match);
+        EXPECT_EQ(report.match->head, row) << "speed " << speed;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Carried,
+                         testing::Values(Candidates::ranges, Candidates::adaptive));
+
+}  // namespace
+}  // namespace seqloop
