@@ -138,14 +138,17 @@ void SequenceSearch::add_up(const DifferenceSlices& slices, const PlaceOrder& or
     const std::int64_t last =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(rows) - row, first, diagonals);
     std::copy_n(before, first, behind);
-    if (order.straight()) {
-      for (std::int64_t d = first; d < last; ++d) {
-        behind[d] = before[d] + static_cast<Sum>(column[row + d]);
-      }
-    } else {
+    if (!order.straight()) {
       for (std::int64_t d = first; d < last; ++d) {
         const std::size_t slot = order.slot(static_cast<std::size_t>(row + d));
         behind[d] = before[d] + static_cast<Sum>(column[slot]);
+      }
+    } else if constexpr (std::is_same_v<Value, std::uint16_t>) {
+      kernels_->add_column(before + first, column + row + first,
+                           static_cast<std::size_t>(last - first), behind + first);
+    } else {
+      for (std::int64_t d = first; d < last; ++d) {
+        behind[d] = before[d] + static_cast<Sum>(column[row + d]);
       }
     }
     std::copy(before + last, before + diagonals, behind + last);

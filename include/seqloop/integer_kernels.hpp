@@ -75,6 +75,11 @@ struct IntegerKernels {
   void (*hamming_column)(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
 
+  /// Goes on with sums: after[j] = before[j] + values[j], modulo 2^32.
+  /// @param before, values, after [count]. Work: count adds.
+  void (*add_column)(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                     std::uint32_t* after) noexcept;
+
   /// Keeps, for consecutive columns, the line with the lowest sum. Column j's sum is that of
   /// prefix[end + j] - prefix[begin + j] over all segments, modulo 2^32: right where the true sum
   /// fits 32 bits, even if what `prefix` adds up does not. Of equal sums, the earlier call's stays.

@@ -14,6 +14,11 @@ void hamming_column_avx512(const std::uint64_t* query, const std::uint64_t* rows
   hamming_column<HighwayDifferences>(query, rows, words, count, bits);
 }
 
+void add_column_avx512(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                       std::uint32_t* after) noexcept {
+  add_column<HighwayLanes>(before, values, count, after);
+}
+
 void lowest_lines_avx512(const std::uint32_t* prefix, const LineSegment* segments,
                          std::size_t segment_count, std::size_t count, std::uint32_t line,
                          std::uint32_t* best, std::uint32_t* lines) noexcept {

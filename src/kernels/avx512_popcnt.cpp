@@ -8,7 +8,7 @@
 namespace seqloop::kernels {
 namespace {
 
-/// vpopcntq counts a block's bits at once.
+/// vpopcntq counts a block's bits at once; of half a block, it counts zeros behind it.
 struct Differences {
   struct Sum {
     __m512i lanes;
@@ -16,8 +16,9 @@ struct Differences {
 
   static Sum zero() noexcept { return {_mm512_setzero_si512()}; }
 
+  template <std::size_t words>
   static Sum add(Sum sum, const std::uint64_t* a, const std::uint64_t* b) noexcept {
-    const __m512i differ = _mm512_xor_si512(_mm512_loadu_si512(a), _mm512_loadu_si512(b));
+    const __m512i differ = _mm512_xor_si512(load<words>(a), load<words>(b));
     return {_mm512_add_epi64(sum.lanes, _mm512_popcnt_epi64(differ))};
   }
 
@@ -28,6 +29,12 @@ struct Differences {
   }
 
  private:
+  template <std::size_t words>
+  static __m512i load(const std::uint64_t* from) noexcept {
+    constexpr auto lanes = static_cast<__mmask8>((1U << words) - 1);
+    return _mm512_maskz_loadu_epi64(lanes, from);
+  }
+
   /// Counts fit 32 bits: those of b go where a has zeros.
   static __m512i packed(__m512i a, __m512i b) noexcept {
     return _mm512_or_si512(a, _mm512_maskz_slli_epi64(all_lanes, b, 32));
@@ -39,6 +46,6 @@ struct Differences {
 constinit const IntegerKernels avx512_popcnt{
     "avx512-vnni-popcnt",         &has_avx512_popcnt,          &dot<Vnni512Products>,
     &dot_column<Vnni512Products>, &dot_block<Vnni512Products>, &hamming<Differences>,
-    &hamming_column<Differences>, &lowest_lines_avx512};
+    &hamming_column<Differences>, &add_column_avx512,          &lowest_lines_avx512};
 
 }  // namespace seqloop::kernels

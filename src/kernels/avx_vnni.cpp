@@ -53,6 +53,7 @@ struct Products {
 
 constinit const IntegerKernels avx_vnni{
     "avx-vnni",           &has_avx_vnni, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_avx2, &hamming_column_avx2, &lowest_lines_avx2};
+    &dot_block<Products>, &hamming_avx2, &hamming_column_avx2, &add_column_avx2,
+    &lowest_lines_avx2};
 
 }  // namespace seqloop::kernels

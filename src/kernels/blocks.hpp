@@ -13,6 +13,9 @@ namespace seqloop::kernels {
 
 inline constexpr std::size_t words_per_block = stored_line / sizeof(std::uint64_t);
 
+/// Half a block: what relocalising looks at of a sketch, for which blocks would be half empty.
+inline constexpr std::size_t words_per_half = words_per_block / 2;
+
 /// Less than a block of 64 bytes, with zeros behind it.
 template <class Owner, class Value>
 struct LastBlock {

@@ -3,8 +3,8 @@
 #include "kernels/blocks.hpp"
 
 // Differences: struct {
-//   Sum: a register; Sum zero(); Sum add(Sum, a, b): bits that differ in one block
-//   totals(sums of sums_together, out) }
+//   Sum: a register; Sum zero(); Sum add<words>(Sum, a, b): bits that differ in so many words, a
+//   block or half of one; totals(sums of sums_together, out) }
 namespace seqloop::kernels {
 
 /// The distances of one sketch to some that lie side by side.
@@ -17,14 +17,23 @@ void distances_abreast(const std::uint64_t* query, const std::uint64_t* row, std
   std::size_t first = 0;
   for (; first + words_per_block <= words; first += words_per_block) {
     for (std::size_t r = 0; r < rows; ++r) {
-      sums[r] = Differences::add(sums[r], row + r * words + first, query + first);
+      sums[r] = Differences::template add<words_per_block>(sums[r], row + r * words + first,
+                                                           query + first);
     }
+  }
+  if (first + words_per_half <= words) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      sums[r] = Differences::template add<words_per_half>(sums[r], row + r * words + first,
+                                                          query + first);
+    }
+    first += words_per_half;
   }
   if (first < words) {
     const LastBlock<Differences, std::uint64_t> last_query(query + first, words - first);
     for (std::size_t r = 0; r < rows; ++r) {
       const LastBlock<Differences, std::uint64_t> last_row(row + r * words + first, words - first);
-      sums[r] = Differences::add(sums[r], last_row.values, last_query.values);
+      sums[r] =
+          Differences::template add<words_per_half>(sums[r], last_row.values, last_query.values);
     }
   }
   std::uint32_t totals[sums_together];
@@ -40,14 +49,25 @@ std::uint32_t hamming(const std::uint64_t* a, const std::uint64_t* b, std::size_
 }
 
 template <class Differences>
-void hamming_column(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
-                    std::size_t count, std::uint32_t* bits) noexcept {
+void column_of(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
+               std::size_t count, std::uint32_t* bits) noexcept {
   std::size_t row = 0;
   for (; row + sums_together <= count; row += sums_together) {
     distances_abreast<Differences, sums_together>(query, rows + row * words, words, bits + row);
   }
   for (; row < count; ++row) {
     distances_abreast<Differences, 1>(query, rows + row * words, words, bits + row);
+  }
+}
+
+template <class Differences>
+void hamming_column(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
+                    std::size_t count, std::uint32_t* bits) noexcept {
+  // Known here, so that nothing is left to decide for each of so short rows.
+  if (words == words_per_half) {
+    column_of<Differences>(query, rows, words_per_half, count, bits);
+  } else {
+    column_of<Differences>(query, rows, words, count, bits);
   }
 }
 

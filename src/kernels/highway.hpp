@@ -84,14 +84,20 @@ struct HighwayDifferences {
 
   static Sum zero() noexcept { return hn::Zero(Words()); }
 
+  template <std::size_t words>
   static Sum add(Sum sum, const std::uint64_t* a, const std::uint64_t* b) noexcept {
-    const hn::ScalableTag<std::uint8_t> bytes;
+    const hn::CappedTag<std::uint64_t, words> some;
+    const hn::Repartition<std::uint8_t, decltype(some)> bytes;
     auto bits = hn::Zero(bytes);
-    for (std::size_t i = 0; i < words_per_block; i += hn::MaxLanes(Words())) {
-      const auto differ = hn::Xor(hn::LoadU(Words(), a + i), hn::LoadU(Words(), b + i));
+    for (std::size_t i = 0; i < words; i += hn::MaxLanes(some)) {
+      const auto differ = hn::Xor(hn::LoadU(some, a + i), hn::LoadU(some, b + i));
       bits = hn::Add(bits, hn::PopulationCount(hn::BitCast(bytes, differ)));
     }
-    return hn::Add(sum, hn::SumsOf8(bits));
+    if constexpr (hn::MaxLanes(some) < hn::MaxLanes(Words())) {
+      return hn::Add(sum, hn::ZeroExtendVector(Words(), hn::SumsOf8(bits)));
+    } else {
+      return hn::Add(sum, hn::SumsOf8(bits));
+    }
   }
 
   static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
@@ -113,6 +119,13 @@ struct HighwayLanes {
   static Sum add_difference(Sum sum, const std::uint32_t* end,
                             const std::uint32_t* begin) noexcept {
     return hn::Add(sum, hn::Sub(hn::LoadU(Tag(), end), hn::LoadU(Tag(), begin)));
+  }
+
+  static void add_values(const std::uint32_t* before, const std::uint16_t* values,
+                         std::uint32_t* after) noexcept {
+    const hn::Rebind<std::uint16_t, Tag> narrow;
+    const auto wide = hn::PromoteTo(Tag(), hn::LoadU(narrow, values));
+    hn::StoreU(hn::Add(hn::LoadU(Tag(), before), wide), Tag(), after);
   }
 
   static void keep_lower(Sum sum, std::uint32_t line, std::uint32_t* best,

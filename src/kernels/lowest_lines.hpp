@@ -4,7 +4,7 @@
 
 // Lanes: struct {
 //   count: columns that are looked at at once; Sum: a register; Sum zero()
-//   Sum add_difference(Sum, end, begin)
+//   Sum add_difference(Sum, end, begin); add_values(before, values, after)
 //   keep_lower(Sum, line, best, lines) }
 namespace seqloop::kernels {
 
@@ -20,6 +20,11 @@ struct OneLane {
     return sum + (*end - *begin);
   }
 
+  static void add_values(const std::uint32_t* before, const std::uint16_t* values,
+                         std::uint32_t* after) noexcept {
+    *after = *before + *values;
+  }
+
   static void keep_lower(Sum sum, std::uint32_t line, std::uint32_t* best,
                          std::uint32_t* lines) noexcept {
     if (sum >= *best) return;
@@ -27,6 +32,16 @@ struct OneLane {
     *lines = line;
   }
 };
+
+template <class Lanes>
+void add_column(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                std::uint32_t* after) noexcept {
+  std::size_t i = 0;
+  for (; i + Lanes::count <= count; i += Lanes::count) {
+    Lanes::add_values(before + i, values + i, after + i);
+  }
+  for (; i < count; ++i) OneLane<Lanes>::add_values(before + i, values + i, after + i);
+}
 
 /// What one line is made from, and what is known of the best.
 struct Line {

@@ -31,6 +31,7 @@ struct Products {
 
 constinit const IntegerKernels neon_dot{
     "neon-dot",           &has_neon_dot, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &lowest_lines_neon};
+    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &add_column_neon,
+    &lowest_lines_neon};
 
 }  // namespace seqloop::kernels

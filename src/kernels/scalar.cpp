@@ -32,8 +32,9 @@ struct Products {
 struct Differences {
   using Sum = std::uint32_t;
   static Sum zero() noexcept { return 0; }
+  template <std::size_t words>
   static Sum add(Sum sum, const std::uint64_t* a, const std::uint64_t* b) noexcept {
-    for (std::size_t i = 0; i < words_per_block; ++i) {
+    for (std::size_t i = 0; i < words; ++i) {
       sum += static_cast<std::uint32_t>(std::popcount(a[i] ^ b[i]));
     }
     return sum;

@@ -25,6 +25,8 @@ std::uint32_t hamming_avx512(const std::uint64_t* a, const std::uint64_t* b,
                              std::size_t words) noexcept;
 void hamming_column_avx512(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                            std::size_t count, std::uint32_t* bits) noexcept;
+void add_column_avx512(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                       std::uint32_t* after) noexcept;
 void lowest_lines_avx512(const std::uint32_t* prefix, const LineSegment* segments,
                          std::size_t segment_count, std::size_t count, std::uint32_t line,
                          std::uint32_t* best, std::uint32_t* lines) noexcept;
@@ -32,6 +34,8 @@ std::uint32_t hamming_avx2(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
 void hamming_column_avx2(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
+void add_column_avx2(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                     std::uint32_t* after) noexcept;
 void lowest_lines_avx2(const std::uint32_t* prefix, const LineSegment* segments,
                        std::size_t segment_count, std::size_t count, std::uint32_t line,
                        std::uint32_t* best, std::uint32_t* lines) noexcept;
@@ -39,6 +43,8 @@ std::uint32_t hamming_neon(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
 void hamming_column_neon(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
+void add_column_neon(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
+                     std::uint32_t* after) noexcept;
 void lowest_lines_neon(const std::uint32_t* prefix, const LineSegment* segments,
                        std::size_t segment_count, std::size_t count, std::uint32_t line,
                        std::uint32_t* best, std::uint32_t* lines) noexcept;

@@ -238,7 +238,7 @@ TEST_P(Variant, HammingCountsNoneAllAndEachSingleBit) {
 
 TEST_P(Variant, HammingColumnEqualsTheDefinitionForEveryShapeAndReadsNothingElse) {
   std::mt19937_64 random(6);
-  for (const std::size_t words : {0U, 1U, 7U, 8U, 9U, 31U, 32U, 33U}) {
+  for (const std::size_t words : {0U, 1U, 3U, 4U, 5U, 7U, 8U, 9U, 12U, 28U, 31U, 32U, 33U}) {
     for (const std::size_t count : {0U, 1U, 2U, 3U, 4U, 5U, 9U}) {
       const Words query = random_words(random, words);
       const Words rows = random_words(random, words * count);
@@ -251,6 +251,25 @@ TEST_P(Variant, HammingColumnEqualsTheDefinitionForEveryShapeAndReadsNothingElse
             << words << ' ' << row << " of " << count;
       }
       EXPECT_EQ(bits[count], 77U) << "nothing is written behind";
+    }
+  }
+}
+
+TEST_P(Variant, GoOnWithSumsOverEverySizeAndAlignment) {
+  std::mt19937 random(17);
+  for (const std::size_t count : {0U, 1U, 3U, 4U, 7U, 8U, 15U, 16U, 17U, 31U, 33U, 148U}) {
+    for (std::size_t shift = 0; shift < 3; ++shift) {
+      std::vector<std::uint32_t> before(count + shift);
+      std::vector<std::uint16_t> values(count + shift);
+      std::vector<std::uint32_t> after(count + shift + 1, 77U);
+      for (auto& value : before) value = static_cast<std::uint32_t>(random());
+      for (auto& value : values) value = static_cast<std::uint16_t>(random());
+      kernels_.add_column(before.data() + shift, values.data() + shift, count,
+                          after.data() + shift);
+      for (std::size_t i = shift; i < count + shift; ++i) {
+        ASSERT_EQ(after[i], before[i] + values[i]) << count << ' ' << shift << ' ' << i;
+      }
+      EXPECT_EQ(after[count + shift], 77U) << "nothing behind the last is written";
     }
   }
 }

@@ -73,8 +73,46 @@ TEST_F(Run, BenchTimesColumnsOfEverySizeAskedFor) {
     }
   }
   EXPECT_EQ(run("bench --only column --n 5,,6").exit_code, 2);
+  EXPECT_EQ(run("bench --only step --ds 2001").exit_code, 2);
   EXPECT_EQ(run("bench --only column --n 0").exit_code, 2);
   EXPECT_EQ(run("bench --only lunch").exit_code, 2);
+}
+
+TEST_F(Run, BenchTimesEveryPartOfAStepByEveryContender) {
+  const std::vector<std::string> methods{"seqloop-int8-exhaustive", "seqloop-int8-o-relocalising",
+                                         "seqloop-float-exhaustive"};
+  const std::vector<std::pair<std::string, std::vector<std::string>>> right{
+      {"step", methods},
+      {"loop", {methods[0], methods[1]}},
+      {"search", {"seqloop-int8", "seqloop-float", "plain-float"}},
+      {"matrix", {"seqloop-int8-with-matches"}}};
+  for (const auto& [what, contenders] : right) {
+    const nlohmann::json rows = nlohmann::json::parse(
+        expect_done("bench --json --n 150 --d 30 --ds 10 --rounds 7 --only " + what).out);
+    ASSERT_EQ(rows.size(), contenders.size()) << what;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      EXPECT_EQ(rows[i]["what"], what);
+      EXPECT_EQ(rows[i]["by"], contenders[i]);
+      EXPECT_EQ(rows[i]["n"], 150);
+      EXPECT_EQ(rows[i]["ds"], 10);
+      EXPECT_EQ(rows[i]["rounds"], 7);
+      EXPECT_GT(rows[i]["bytes"], 0);
+      EXPECT_GT(rows[i]["p50_us"], 0.0);
+      EXPECT_LE(rows[i]["p50_us"], rows[i]["p99_us"]);
+      EXPECT_LE(rows[i]["p99_us"], rows[i]["p999_us"]);
+      EXPECT_LE(rows[i]["p999_us"], rows[i]["max_us"]);
+    }
+  }
+}
+
+TEST_F(Run, BenchDrivesARobotThatIsRecognised) {
+  const std::string said = expect_done("bench --only step --n 900 --d 64 --rounds 400").err;
+  for (std::size_t at = 0, line = 0; line < 3; ++line) {
+    at = said.find(" % of the frames found", at + 1);
+    ASSERT_NE(at, std::string::npos) << said;
+    const std::size_t begin = said.rfind(' ', at - 1);
+    EXPECT_GT(std::stod(said.substr(begin, at - begin)), 60.0) << said;
+  }
 }
 
 TEST_F(Run, MatchFollowsThePaperToTheLetter) {

@@ -2,9 +2,11 @@
 
 #include <cblas-openblas.h>
 #include <faiss/IndexFlat.h>
+#include <faiss/IndexHNSW.h>
 #include <omp.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -16,14 +18,25 @@ namespace {
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// FAISS keeps its rows without padding.
-std::shared_ptr<faiss::IndexFlatL2> indexed(const program::ColumnData& data) {
-  const std::size_t size = data.size.descriptor_size;
-  const std::size_t stride = padded_size(size);
-  auto index = std::make_shared<faiss::IndexFlatL2>(static_cast<faiss::Index::idx_t>(size));
-  for (std::size_t row = 0; row < data.size.places; ++row) {
-    index->add(1, data.rows.data() + row * stride);
+void add_rows(faiss::Index& index, const program::ColumnData& data) {
+  const std::size_t stride = padded_size(data.size.descriptor_size);
+  if (stride == data.size.descriptor_size) {
+    index.add(static_cast<faiss::Index::idx_t>(data.size.places), data.rows.data());
+    return;
   }
-  return index;
+  for (std::size_t row = 0; row < data.size.places; ++row) {
+    index.add(1, data.rows.data() + row * stride);
+  }
+}
+
+/// Looks for the place that is nearest to the query.
+std::function<void()> search_by(std::shared_ptr<const faiss::Index> index,
+                                std::span<const float> query) {
+  return [index = std::move(index), query] {
+    float distance = 0.0F;
+    faiss::Index::idx_t nearest = 0;
+    index->search(1, query.data(), 1, &distance, &nearest);
+  };
 }
 
 }  // namespace
@@ -41,9 +54,10 @@ std::vector<program::Contender> columns(const program::ColumnData& data) {
         {"column", std::move(by), places, size, places * size * sizeof(float), std::move(round)});
   };
   add("eigen-gemv", [=] {
-    const auto width = static_cast<Eigen::Index>(stride);
-    const Eigen::Map<const Matrix> rows(data.rows.data(), static_cast<Eigen::Index>(places), width);
-    const Eigen::Map<const Eigen::VectorXf> query(data.query.data(), width);
+    const auto columns = static_cast<Eigen::Index>(stride);
+    const Eigen::Map<const Matrix> rows(data.rows.data(), static_cast<Eigen::Index>(places),
+                                        columns);
+    const Eigen::Map<const Eigen::VectorXf> query(data.query.data(), columns);
     out->noalias() = rows * query;
   });
   add("openblas-sgemv", [=] {
@@ -51,12 +65,18 @@ std::vector<program::Contender> columns(const program::ColumnData& data) {
                 static_cast<blasint>(size), 1.0F, data.rows.data(), static_cast<blasint>(stride),
                 data.query.data(), 1, 0.0F, out->data(), 1);
   });
-  add("faiss-flat", [=, index = indexed(data)] {
-    float distance = 0.0F;
-    faiss::Index::idx_t nearest = 0;
-    index->search(1, data.query.data(), 1, &distance, &nearest);
-    (*out)[0] = distance;
-  });
+  const auto width = static_cast<faiss::Index::idx_t>(size);
+  const auto flat = std::make_shared<faiss::IndexFlatL2>(width);
+  add_rows(*flat, data);
+  add("faiss-flat", search_by(flat, data.query));
+  if (data.graph) {
+    constexpr int links = 32;
+    const auto graph = std::make_shared<faiss::IndexHNSWFlat>(width, links);
+    add_rows(*graph, data);
+    add("faiss-hnsw32", search_by(graph, data.query));
+    // It looks at this many places at least.
+    contenders.back().bytes = static_cast<std::size_t>(graph->hnsw.efSearch) * size * sizeof(float);
+  }
   return contenders;
 }
 

@@ -1,11 +1,18 @@
 #pragma once
 
 #include "seqloop/column_bench.hpp"
+#include "seqloop/matrix_bench.hpp"
 #include "seqloop/verb.hpp"
 
 namespace seqloop::program {
 
-/// `bench`, with the columns of other libraries beside ours.
-[[nodiscard]] Verb bench_verb(RivalColumns rivals);
+/// What other libraries do, to be timed beside ours; may be empty.
+struct Rivals {
+  RivalColumns columns{};
+  RivalMatrices matrices{};
+};
+
+/// `bench`, with rivals in the same run.
+[[nodiscard]] Verb bench_verb(const Rivals& rivals);
 
 }  // namespace seqloop::program

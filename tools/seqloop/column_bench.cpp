@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "seqloop/arena.hpp"
+#include "seqloop/available_memory.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/fastest_read.hpp"
 #include "seqloop/fixed_distance.hpp"
 #include "seqloop/integer_kernels.hpp"
+#include "seqloop/made_places.hpp"
 #include "seqloop/quantised.hpp"
 #include "seqloop/sketch.hpp"
 
@@ -37,16 +39,16 @@ struct Places {
     rows = arena.take<float>("rows", size.places * query.size());
     small_rows = arena.take<std::int8_t>("small rows", size.places * stride);
     sketches = arena.take<std::uint64_t>("sketches", size.places * sketch_words);
-    std::mt19937 random(1);
+    MadePlaces street(size.descriptor_size);
     for (std::size_t row = 0; row < size.places; ++row) {
-      const std::vector<float> place = random_unit(random, size.descriptor_size);
-      std::ranges::copy(place, rows.subspan(row * query.size()).begin());
+      const std::span<float> place = rows.subspan(row * query.size(), size.descriptor_size);
+      street.see(static_cast<double>(row), 0.0F, place);
       const std::span<std::int8_t> small = small_rows.subspan(row * stride, stride);
       inverse_rows[row] = inverse_length(quantise(place, small).squared_norm);
       sketch(small.first(size.descriptor_size), sketches.subspan(row * sketch_words, sketch_words));
     }
-    const std::vector<float> unit = random_unit(random, size.descriptor_size);
-    std::ranges::copy(unit, query.begin());
+    const std::span<float> unit = std::span(query).first(size.descriptor_size);
+    street.see(static_cast<double>(size.places) / 2.0, 1.0F, unit);
     inverse_query = inverse_length(quantise(unit, small_query).squared_norm);
     sketch(std::span(small_query).first(size.descriptor_size), query_sketch);
   }
@@ -105,20 +107,17 @@ std::vector<Contender> our_columns(Places& places) {
 
 }  // namespace
 
-std::vector<float> random_unit(std::mt19937& random, std::size_t size) {
-  std::normal_distribution<float> normal;
-  std::vector<float> vector(size);
-  for (float& value : vector) value = normal(random);
-  normalise(vector);
-  return vector;
-}
-
-void time_columns(const Capacity& size, const RivalColumns& rivals, std::size_t rounds,
-                  std::vector<Contender>& timed) {
+void time_columns(const Capacity& size, std::size_t graph_places, const RivalColumns& rivals,
+                  std::size_t rounds, std::vector<Contender>& timed) {
+  const std::size_t copies = !rivals ? 1 : size.places <= graph_places ? 3 : 2;
+  const std::size_t floats = size.places * padded_size(size.descriptor_size) * sizeof(float);
+  const std::size_t bytes = size.places * padded_bytes(size.descriptor_size) + copies * floats;
+  if (!fits_memory(bytes, fmt::format("column of {} places", size.places))) return;
   Places places(size);
   std::vector<Contender> contenders = our_columns(places);
   if (rivals) {
-    for (Contender& rival : rivals({size, places.query, places.rows})) {
+    for (Contender& rival :
+         rivals({size, places.query, places.rows, size.places <= graph_places})) {
       contenders.push_back(std::move(rival));
     }
   }

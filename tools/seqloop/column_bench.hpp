@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <random>
 #include <span>
 #include <vector>
 
@@ -15,6 +14,7 @@ struct ColumnData {
   Capacity size;
   std::span<const float> query;  ///< [D] of length 1
   std::span<const float> rows;   ///< [N, padded_size(D)] of length 1, zero beyond D
+  bool graph;  ///< whether a graph of nearest neighbours may be built, which takes long
 };
 
 /// Makes contenders of other libraries; what they hold of the data may be views.
@@ -23,10 +23,9 @@ using RivalColumns = std::function<std::vector<Contender>(const ColumnData&)>;
 /// A column of distances: int8 by every variant that this processor has (the one in use first),
 /// sketches, float, the rivals, and how long it takes just to read the rows in int8 and in float.
 /// Rows are read again and again: from the cache that they fit, if they fit one.
-void time_columns(const Capacity& size, const RivalColumns& rivals, std::size_t rounds,
-                  std::vector<Contender>& timed);
-
-/// A random direction. @return [size] of length 1
-[[nodiscard]] std::vector<float> random_unit(std::mt19937& random, std::size_t size);
+/// What does not fit the memory that is available is left out, and it is said.
+/// @param graph_places places up to which rivals may build graphs
+void time_columns(const Capacity& size, std::size_t graph_places, const RivalColumns& rivals,
+                  std::size_t rounds, std::vector<Contender>& timed);
 
 }  // namespace seqloop::program

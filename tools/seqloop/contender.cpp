@@ -7,30 +7,44 @@
 namespace seqloop::program {
 namespace {
 
-// A turn's first rounds do not count: they find in the caches what another contender left there.
-constexpr std::size_t untimed_a_turn = 3;
-constexpr std::size_t timed_a_turn = 4;
+constexpr Nanoseconds most_time = std::chrono::seconds(20);
+constexpr Nanoseconds most_untimed = std::chrono::seconds(1);
 
-void take_turn(Contender& contender, std::size_t timed_rounds) {
-  for (std::size_t round = 0; round < untimed_a_turn; ++round) contender.round();
-  for (std::size_t round = 0; round < timed_rounds; ++round) {
-    const auto begin = std::chrono::steady_clock::now();
-    contender.round();
-    contender.times.add(std::chrono::steady_clock::now() - begin);
+Nanoseconds time_of_round(Contender& contender) {
+  if (contender.prepare) contender.prepare();
+  const auto begin = std::chrono::steady_clock::now();
+  contender.round();
+  return std::chrono::steady_clock::now() - begin;
+}
+
+/// @return how long it took
+Nanoseconds take_turn(Contender& contender, Turn turn, Nanoseconds most) {
+  Nanoseconds taken{0};
+  for (std::size_t round = 0; round < turn.untimed && taken < most_untimed; ++round) {
+    taken += time_of_round(contender);
   }
+  for (std::size_t round = 0; round < turn.timed && (round == 0 || taken < most); ++round) {
+    const Nanoseconds time = time_of_round(contender);
+    contender.times.add(time);
+    taken += time;
+  }
+  return taken;
 }
 
 }  // namespace
 
 void time_in_turn(std::vector<Contender> contenders, std::size_t rounds,
-                  std::vector<Contender>& timed) {
-  for (std::size_t done = 0; done < rounds; done += timed_a_turn) {
-    for (Contender& contender : contenders) {
-      take_turn(contender, std::min(timed_a_turn, rounds - done));
+                  std::vector<Contender>& timed, Turn turn) {
+  std::vector<Nanoseconds> left(contenders.size(), most_time);
+  for (std::size_t done = 0; done < rounds; done += turn.timed) {
+    const Turn this_turn{turn.untimed, std::min(turn.timed, rounds - done)};
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      if (left[i] > Nanoseconds{0}) left[i] -= take_turn(contenders[i], this_turn, left[i]);
     }
   }
   for (Contender& contender : contenders) {
     contender.round = nullptr;
+    contender.prepare = nullptr;
     timed.push_back(std::move(contender));
   }
 }
