@@ -217,6 +217,51 @@ TEST(Detector, SpreadsTheExhaustiveWorkEvenly) {
   }
 }
 
+TEST(Detector, SeveralFramesAtOnceAreAsManySteps) {
+  const oracle::Vectors reference = oracle::drive(9, 300, 40);
+  oracle::Vectors query = oracle::drive(9, 260, 40, 0.3F);
+  query[1].clear();
+  query[77] = std::vector<float>(40, 0.0F);
+  query[78].clear();
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    for (const Arithmetic arithmetic :
+         {Arithmetic::float32, Arithmetic::int8, Arithmetic::sketch}) {
+      for (const Candidates candidates : {Candidates::all, Candidates::adaptive}) {
+        for (const std::size_t at_once : {1U, 3U, 32U, 64U}) {
+          MatcherConfig config;
+          config.use = use;
+          config.arithmetic = arithmetic;
+          config.candidates = candidates;
+          config.sequence_length = 12;
+          config.exclude = 30;
+          const auto wanted =
+              reports(use == Use::localise ? reference : oracle::Vectors{}, query, config);
+          config.frames_at_once = at_once;
+          PlaceMap map =
+              use == Use::localise ? map_of(reference, config) : PlaceMap(config, {260, 40});
+          Detector detector(config, map);
+          std::vector<FrameReport> given(query.size());
+          for (std::size_t first = 0; first < query.size();) {
+            // Not always as many as fit.
+            const std::size_t count =
+                std::min(first % 2 == 0 ? at_once : (at_once + 1) / 2, query.size() - first);
+            const std::vector<std::span<const float>> frames(
+                query.begin() + static_cast<std::ptrdiff_t>(first),
+                query.begin() + static_cast<std::ptrdiff_t>(first + count));
+            detector.steps(frames, std::span(given).subspan(first, count));
+            first += count;
+          }
+          for (std::size_t frame = 0; frame < query.size(); ++frame) {
+            expect_same_answer(given[frame], wanted[frame]);
+            EXPECT_EQ(given[frame].work, wanted[frame].work) << frame;
+            EXPECT_EQ(given[frame].map_full, wanted[frame].map_full);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(Detector, SameInputSameReports) {
   const oracle::Vectors drive = two_laps(2, 120, 30);
   MatcherConfig config;

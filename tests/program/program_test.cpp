@@ -133,6 +133,8 @@ TEST_F(Run, MatchFollowsThePaperToTheLetter) {
             "--initial-k 7 --rwindow 8 --exclude 15 --ds " +
             std::to_string(ds) + (closing ? "" : " --reference r.npy") + " --method " + method);
         MatcherConfig config;
+        config.arithmetic = Arithmetic::float32;
+        config.relocalising.on = false;
         config.candidates = candidates;
         config.sequence_length = ds;
         config.k = 3;
@@ -158,6 +160,7 @@ TEST_F(Run, SeqSlamTakesPatchesAsTheyAreAndEnhances) {
   write_npy("r.npy", reference);
   write_npy("q.npy", query);
   MatcherConfig config;
+  config.arithmetic = Arithmetic::float32;
   config.candidates = Candidates::all;
   config.difference = Difference::mean_absolute;
   for (const bool enhance : {true, false}) {
@@ -178,6 +181,7 @@ TEST_F(Run, SingleImagesAreASequenceOfNone) {
   write_npy("q.npy", query);
   for (const bool enhance : {false, true}) {
     MatcherConfig config;
+    config.arithmetic = Arithmetic::float32;
     config.candidates = Candidates::all;
     config.sequence_length = 0;
     config.enhance = enhance;
