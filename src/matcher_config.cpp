@@ -63,7 +63,8 @@ bool relocalises(const MatcherConfig& config) noexcept {
 std::size_t distances_a_frame(const MatcherConfig& config) noexcept {
   constexpr std::size_t least = 256;
   if (config.relocalising.distances != 0) return config.relocalising.distances;
-  return std::max(least, 4 * distances_of_one_range(config));
+  constexpr std::size_t ranges = 7;
+  return std::max(least, ranges * distances_of_one_range(config));
 }
 
 std::size_t least_places(const MatcherConfig& config) noexcept {

@@ -114,7 +114,7 @@ struct Capacity {
 [[nodiscard]] bool relocalises(const MatcherConfig& config) noexcept;
 
 /// The most descriptor distances that the candidates of one frame may cost where the detector
-/// relocalises: four times what keeping up with one range takes, or 256 if that is more, unless
+/// relocalises: seven times what keeping up with one range takes, or 256 if that is more, unless
 /// the configuration says.
 [[nodiscard]] std::size_t distances_a_frame(const MatcherConfig& config) noexcept;
 

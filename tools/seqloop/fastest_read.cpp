@@ -77,6 +77,7 @@ std::size_t beyond_every_cache() {
 std::function<void()> fastest_read(Memory memory) {
   std::vector<Way> ways = all_ways(memory);
   std::vector<std::chrono::nanoseconds> times;
+  times.reserve(ways.size());
   for (const Way& way : ways) times.push_back(time_of(way));
   return std::move(ways[static_cast<std::size_t>(std::ranges::min_element(times) - times.begin())]);
 }
