@@ -66,10 +66,10 @@ void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
     // About as many rows around the middle as can be afforded, at least one fewer.
     const std::size_t left = std::min(most_distances_ - distances_, more.distances);
     const std::size_t share = more.distances == 0 ? length : length * left / more.distances;
-    const std::size_t half = (std::min({share, most_rows_ - rows_, length - 1}) - 1) / 2;
+    const std::size_t rows = std::min({share, most_rows_ - rows_, length - 1});
+    const std::size_t half = (std::max<std::size_t>(rows, 1) - 1) / 2;
     const std::size_t middle = range.first + length / 2;
-    range = share == 0 ? CandidateRun{middle, middle + 1}
-                       : CandidateRun{middle - half, middle + half + 1};
+    range = {middle - half, middle + half + 1};
   }
 }
 
