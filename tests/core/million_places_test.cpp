@@ -123,7 +123,8 @@ TEST(MillionPlaces, TakeWhatThePlanSaysAndNoStepMoreThanInASmallMap) {
       frames);
   EXPECT_NEAR(stepped, planned, 0.05 * planned);
   EXPECT_EQ(allocations, 0U);
-  EXPECT_EQ(faults, 0);
+  // The kernel takes a page away now and then; a step that takes memory would do so each time.
+  EXPECT_LT(faults, static_cast<long>(frames / 100));
   // All slices of the map have been looked at once after so many frames.
   const std::size_t round = places / config.relocalising.slice + 1;
   for (const std::size_t right : found) {

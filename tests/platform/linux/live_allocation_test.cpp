@@ -148,7 +148,7 @@ TEST_P(LiveAllocation, NoStageTakesMemoryOrFaultsAPageIn) {
 TEST_P(LiveAllocation, AStageThatDoesIsFound) {
   const Found found = run(GetParam(), Use::localise, true);
   EXPECT_EQ(found.allocations, 1U);
-  EXPECT_EQ(found.page_faults, 1U);
+  EXPECT_GE(found.page_faults, 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, LiveAllocation,

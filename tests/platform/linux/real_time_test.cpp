@@ -8,9 +8,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <thread>
+#include <vector>
 
 #include "expect_setup_error.hpp"
 
@@ -131,12 +135,23 @@ TEST(RealTime, CountersCountFaultsAndWaits) {
   munmap(fresh, pages * page);
 }
 
+/// Faults of one use of memory. The kernel takes a page away now and then: what would fault each
+/// time does so in all of ten goes.
+template <class Use>
+std::uint64_t fewest_faults(Use use) {
+  std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+  for (int go = 0; go < 10; ++go) {
+    const ThreadCounters before = thread_counters();
+    use();
+    fewest = std::min(fewest, thread_counters().minor_faults - before.minor_faults);
+  }
+  return fewest;
+}
+
 TEST(RealTime, TouchedStackFaultsNoMore) {
   std::thread([] {
     touch_stack();
-    const ThreadCounters before = thread_counters();
-    touch_stack();
-    EXPECT_EQ(thread_counters().minor_faults, before.minor_faults);
+    EXPECT_EQ(fewest_faults(touch_stack), 0U);
   }).join();
 }
 
@@ -147,13 +162,19 @@ TEST(RealTime, LockedMemoryIsThereBeforeItIsTouched) {
   const Faults faults = lock_memory();
   if (!faults.empty()) GTEST_SKIP() << text_of(faults);
   constexpr std::size_t bytes = 64 * 4096;
-  void* const fresh =
-      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  ASSERT_NE(fresh, MAP_FAILED);
-  const ThreadCounters before = thread_counters();
-  for (std::size_t i = 0; i < bytes; i += 4096) static_cast<volatile char*>(fresh)[i] = 1;
-  EXPECT_EQ(thread_counters().minor_faults, before.minor_faults);
-  munmap(fresh, bytes);
+  const auto fresh = [] {
+    return static_cast<volatile char*>(
+        mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+  };
+  std::vector<volatile char*> blocks;
+  for (int go = 0; go < 10; ++go) blocks.push_back(fresh());
+  std::size_t next = 0;
+  EXPECT_EQ(fewest_faults([&] {
+              volatile char* const block = blocks[next++];
+              for (std::size_t i = 0; i < bytes; i += 4096) block[i] = 1;
+            }),
+            0U);
+  for (volatile char* const block : blocks) munmap(const_cast<char*>(block), bytes);
   munlockall();
 }
 
@@ -170,9 +191,7 @@ TEST(RealTime, FreedMemoryThatIsKeptComesBackWithoutFaults) {
     std::free(const_cast<char*>(memory));
   };
   use();
-  const ThreadCounters before = thread_counters();
-  use();
-  EXPECT_EQ(thread_counters().minor_faults, before.minor_faults);
+  EXPECT_EQ(fewest_faults(use), 0U);
 }
 
 }  // namespace
