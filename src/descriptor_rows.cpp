@@ -62,9 +62,13 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
       quantised_(arena.take<std::int8_t>(
           "what a sketch is made of",
           words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
+      sketched_values_(
+          arena.take<SketchedValue>("what a sketch is made of", sketched_values(words_))),
       sketches_(arena.take<std::uint64_t>(names.sketches, rows * words_)),
-      scanned_(arena.take<std::uint64_t>(names.sketches,
-                                         form.relocalising ? rows * scanned_words : 0)) {}
+      scanned_(
+          arena.take<std::uint64_t>(names.sketches, form.relocalising ? rows * scanned_words : 0)) {
+  choose_sketched_values(form.size, sketched_values_);
+}
 
 void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
@@ -79,7 +83,7 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
   }
   if (words_ == 0) return;
   const std::span<std::uint64_t> words = sketches_.subspan(row * words_, words_);
-  sketch(bytes.first(form_.size), words);
+  sketch(bytes.first(form_.size), sketched_values_, words);
   if (!form_.relocalising) return;
   std::ranges::copy(words.first(scanned_words), scanned_.subspan(row * scanned_words).begin());
 }
@@ -160,6 +164,13 @@ std::uint32_t DescriptorRows::look_closely(const DescriptorRows& queries, std::s
                                            std::size_t row) const noexcept {
   return kernels_->hamming(&queries.sketches_[query * words_], &sketches_[row * words_],
                            close_words);
+}
+
+void DescriptorRows::prefetch_sketches(std::size_t first, std::size_t count) const noexcept {
+  constexpr std::size_t line = stored_line / sizeof(std::uint64_t);
+  for (std::size_t word = first * words_; word < (first + count) * words_; word += line) {
+    __builtin_prefetch(&sketches_[word]);
+  }
 }
 
 void DescriptorRows::restore(std::size_t row, std::span<float> out) const noexcept {

@@ -13,29 +13,28 @@ std::uint64_t random_number(std::uint64_t n) noexcept {
   return z ^ (z >> 31U);
 }
 
-/// The value that a random number chooses, or its negative.
-std::int32_t chosen(std::span<const std::int8_t> descriptor, std::uint64_t random) noexcept {
-  const auto place = static_cast<std::size_t>(((random >> 32U) * descriptor.size()) >> 32U);
-  const std::int32_t sign = (random & 1U) != 0 ? 1 : -1;
-  return sign * descriptor[place];
-}
-
-bool above(std::span<const std::int8_t> descriptor, std::uint64_t bit) noexcept {
-  std::int32_t sum = 0;
-  for (std::uint64_t i = 0; i < values_per_bit; ++i) {
-    sum += chosen(descriptor, random_number(bit * values_per_bit + i));
-  }
-  return sum > 0;
-}
-
 }  // namespace
 
-void sketch(std::span<const std::int8_t> descriptor, std::span<std::uint64_t> out) noexcept {
-  for (std::size_t word = 0; word < out.size(); ++word) {
-    out[word] = 0;
+void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue> out) noexcept {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint64_t random = random_number(i);
+    const std::uint64_t place = ((random >> 32U) * descriptor_size) >> 32U;
+    out[i] = {static_cast<std::uint32_t>(place) & 0x7FFFFFFFU, (random & 1U) != 0 ? 0U : 1U};
+  }
+}
+
+void sketch(std::span<const std::int8_t> descriptor, std::span<const SketchedValue> chosen,
+            std::span<std::uint64_t> out) noexcept {
+  const SketchedValue* value = chosen.data();
+  for (std::uint64_t& word : out) {
+    word = 0;
     for (std::size_t bit = 0; bit < bits_per_word; ++bit) {
-      const bool set = above(descriptor, word * bits_per_word + bit);
-      out[word] |= static_cast<std::uint64_t>(set) << bit;
+      std::int32_t sum = 0;
+      for (std::size_t i = 0; i < values_per_bit; ++i, ++value) {
+        const std::int32_t sign = 1 - 2 * static_cast<std::int32_t>(value->subtracted);
+        sum += sign * descriptor[value->place];
+      }
+      word |= static_cast<std::uint64_t>(sum > 0) << bit;
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "seqloop/arena.hpp"
 #include "seqloop/integer_kernels.hpp"
 #include "seqloop/matcher_config.hpp"
+#include "seqloop/sketch.hpp"
 
 namespace seqloop {
 
@@ -76,6 +77,9 @@ class DescriptorRows {
   [[nodiscard]] std::uint32_t look_closely(const DescriptorRows& queries, std::size_t query,
                                            std::size_t row) const noexcept;
 
+  /// Has the processor fetch the sketches of consecutive rows, which will be looked at soon.
+  void prefetch_sketches(std::size_t first, std::size_t count) const noexcept;
+
   /// About what was stored, to show or to save: exact for `float32`, to half a 127th of the largest
   /// value for `int8`, signs for `sketch`.
   /// @param out [restored_size()] unit L2 or zero, where that went in; zero beyond D
@@ -100,6 +104,7 @@ class DescriptorRows {
   std::span<std::int8_t> small_;       // [rows, stride], int8
   std::span<double> inverse_lengths_;  // [rows], int8
   std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
+  std::span<SketchedValue> sketched_values_;
   std::span<std::uint64_t> sketches_;  // [rows, words_]
   std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side
 };

@@ -13,14 +13,32 @@ inline constexpr std::size_t sketch_words = 32;
 /// within the noise; this is cheap and among the best.
 inline constexpr std::size_t values_per_bit = 4;
 
+/// One of the values that a bit adds up.
+struct SketchedValue {
+  std::uint32_t place : 31;
+  std::uint32_t subtracted : 1;
+};
+
+/// How many values a sketch of so many words adds up.
+[[nodiscard]] constexpr std::size_t sketched_values(std::size_t words) noexcept {
+  return words * 64 * values_per_bit;
+}
+
+/// Chooses the values of all bits, the same ones for the same D on every processor.
+/// @param descriptor_size D, 1 .. most_small_values; zero padding would dilute the sums
+/// @param out [sketched_values(words)] written; those of a longer sketch begin with the shorter's
+void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue> out) noexcept;
+
 /// Keeps of a descriptor on which side of some planes it lies: bit b is whether the sum of
 /// `values_per_bit` of its values, chosen by chance, half of them by chance subtracted, is above 0.
 /// The chance is fixed and the arithmetic whole: the same on every processor. The more two
 /// descriptors are alike, the fewer bits differ, about words * 64 * angle / pi; so descriptors
 /// should be standardised, or all would lie on the same sides.
-/// @param descriptor [D] D from 1 up to most_small_values; zero padding would dilute the sums
-/// @param out        [words] written; a longer sketch begins with the shorter one
+/// @param descriptor [D]
+/// @param chosen     [sketched_values(words)] for this D
+/// @param out        [words] written
 /// Work: words * 64 * values_per_bit adds, whatever D is. Allocates: never.
-void sketch(std::span<const std::int8_t> descriptor, std::span<std::uint64_t> out) noexcept;
+void sketch(std::span<const std::int8_t> descriptor, std::span<const SketchedValue> chosen,
+            std::span<std::uint64_t> out) noexcept;
 
 }  // namespace seqloop

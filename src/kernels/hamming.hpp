@@ -48,11 +48,21 @@ std::uint32_t hamming(const std::uint64_t* a, const std::uint64_t* b, std::size_
   return bits;
 }
 
+// How far ahead of the row that is read another is fetched: the processor reads ahead by itself,
+// but not beyond the page that it is in.
+constexpr std::size_t words_ahead = 256;
+constexpr std::size_t words_per_line = 8;
+
 template <class Differences>
 void column_of(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                std::size_t count, std::uint32_t* bits) noexcept {
   std::size_t row = 0;
   for (; row + sums_together <= count; row += sums_together) {
+    for (std::size_t word = row * words + words_ahead;
+         word < (row + sums_together) * words + words_ahead && word < count * words;
+         word += words_per_line) {
+      __builtin_prefetch(rows + word);
+    }
     distances_abreast<Differences, sums_together>(query, rows + row * words, words, bits + row);
   }
   for (; row < count; ++row) {

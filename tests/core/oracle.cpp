@@ -224,7 +224,9 @@ class Matcher {
 Forms::Forms(std::vector<float> descriptor)
     : values(std::move(descriptor)), bytes(values.size()), sketch{} {
   inverse_length = seqloop::inverse_length(quantise(values, bytes).squared_norm);
-  seqloop::sketch(bytes, sketch);
+  std::vector<SketchedValue> chosen(sketched_values(sketch.size()));
+  choose_sketched_values(bytes.size(), chosen);
+  seqloop::sketch(bytes, chosen, sketch);
 }
 
 double difference(const MatcherConfig& config, const Forms& a, const Forms& b) {

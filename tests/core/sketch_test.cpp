@@ -20,7 +20,9 @@ using Words = std::vector<std::uint64_t>;
 
 Words sketched(std::span<const std::int8_t> descriptor, std::size_t words = sketch_words) {
   Words out(words, ~std::uint64_t{0});
-  sketch(descriptor, out);
+  std::vector<SketchedValue> chosen(sketched_values(words));
+  choose_sketched_values(descriptor.size(), chosen);
+  sketch(descriptor, chosen, out);
   return out;
 }
 

@@ -40,17 +40,20 @@ struct Places {
     small_rows = arena.take<std::int8_t>("small rows", size.places * stride);
     sketches = arena.take<std::uint64_t>("sketches", size.places * sketch_words);
     MadePlaces street(size.descriptor_size);
+    std::vector<SketchedValue> chosen(sketched_values(sketch_words));
+    choose_sketched_values(size.descriptor_size, chosen);
     for (std::size_t row = 0; row < size.places; ++row) {
       const std::span<float> place = rows.subspan(row * query.size(), size.descriptor_size);
       street.see(static_cast<double>(row), 0.0F, place);
       const std::span<std::int8_t> small = small_rows.subspan(row * stride, stride);
       inverse_rows[row] = inverse_length(quantise(place, small).squared_norm);
-      sketch(small.first(size.descriptor_size), sketches.subspan(row * sketch_words, sketch_words));
+      sketch(small.first(size.descriptor_size), chosen,
+             sketches.subspan(row * sketch_words, sketch_words));
     }
     const std::span<float> unit = std::span(query).first(size.descriptor_size);
     street.see(static_cast<double>(size.places) / 2.0, 1.0F, unit);
     inverse_query = inverse_length(quantise(unit, small_query).squared_norm);
-    sketch(std::span(small_query).first(size.descriptor_size), query_sketch);
+    sketch(std::span(small_query).first(size.descriptor_size), chosen, query_sketch);
   }
 
   Capacity size;
