@@ -17,21 +17,26 @@ std::size_t most_runs(const MatcherConfig& config) {
   return k + (relocalises(config) ? PromisingRows::most : 0);
 }
 
-/// Visits the cells that lines through the run can touch: visit(frame, first row, last row).
+/// Visits the cells that lines through the run can touch, the newest first, until one says false:
+/// visit(frame, first row, last row).
 template <class Visit>
-void for_each_column(const AdmittedRows::Window& window, CandidateRun run, Visit visit) {
+bool for_each_column(const AdmittedRows::Window& window, CandidateRun run, Visit visit) {
   const Trajectories& lines = *window.trajectories;
   const auto first_row = static_cast<std::int64_t>(run.first);
   const auto last_row = static_cast<std::int64_t>(run.last);
-  for (std::size_t i = 0; i < lines.window(); ++i) {
-    // In a window that is not full yet, the first frames are still missing.
-    if (window.end + i < window.first + lines.window()) continue;
+  // In a window that is not full yet, the first frames are still missing.
+  const auto frames =
+      static_cast<std::size_t>(std::min<std::uint64_t>(lines.window(), window.end - window.first));
+  for (std::size_t i = lines.window(); i-- > lines.window() - frames;) {
     const auto first = std::max<std::int64_t>(first_row + lines.lowest(i), 0);
     const auto last = std::min(last_row + lines.highest(i), static_cast<std::int64_t>(window.rows));
     if (first >= last) continue;
-    visit(window.end + i - lines.window(), static_cast<std::size_t>(first),
-          static_cast<std::size_t>(last));
+    if (!visit(window.end + i - lines.window(), static_cast<std::size_t>(first),
+               static_cast<std::size_t>(last))) {
+      return false;
+    }
   }
+  return true;
 }
 
 }  // namespace
@@ -50,6 +55,8 @@ void AdmittedRows::clear() noexcept {
 
 void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
   if (rows_ == most_rows_) return;
+  // With nothing left to spend, only what is there already can come in.
+  if (distances_ == most_distances_ && !complete(window, range)) return;
   for (;;) {
     const Cost more = limited_ ? cost(window, range) : Cost{1, 0};
     if (more.rows == 0) return;
@@ -57,7 +64,7 @@ void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
         rows_ + more.rows <= most_rows_ && distances_ + more.distances <= most_distances_;
     const std::size_t length = range.last - range.first;
     if (fits || length == 1) {
-      compute(window, range);
+      compute(window, range, fits);
       if (!fits) return;
       rows_ += more.rows;
       runs_.add(range);
@@ -79,18 +86,32 @@ AdmittedRows::Cost AdmittedRows::cost(const Window& window, CandidateRun range) 
     sum.rows += part.last - part.first;
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
       sum.distances += window.slices->missing(*window.map, frame, first, last);
+      return true;
     });
   });
   return sum;
 }
 
-void AdmittedRows::compute(const Window& window, CandidateRun range) noexcept {
+bool AdmittedRows::complete(const Window& window, CandidateRun range) const noexcept {
+  bool complete = true;
+  runs_.for_each_outside(range, [&](CandidateRun part) {
+    complete = complete &&
+               for_each_column(
+                   window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
+                     return window.slices->missing(*window.map, frame, first, last) == 0;
+                   });
+  });
+  return complete;
+}
+
+void AdmittedRows::compute(const Window& window, CandidateRun range, bool fits) noexcept {
   runs_.for_each_outside(range, [&](CandidateRun part) {
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
       // A column is computed whole, or left to the next frames.
       const std::size_t left = most_distances_ - distances_;
-      if (limited_ && window.slices->missing(*window.map, frame, first, last) > left) return;
+      if (!fits && window.slices->missing(*window.map, frame, first, last) > left) return false;
       distances_ += window.slices->fill(*window.map, frame, first, last);
+      return true;
     });
   });
 }

@@ -124,7 +124,7 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       ranges_(arena, config),
       promising_(arena, config, capacity.places),
       admitted_(arena, config),
-      decision_(config.rwindow),
+      decision_(arena, config),
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
@@ -182,7 +182,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   }
   const bool keep_rival = report.full_search || relocalises(config_);
   const auto best =
-      decision_.decide(search_.scores(), admitted_.runs(), keep_rival, promising_.promises());
+      decision_.decide(search_.scores(), admitted_.runs(), keep_rival, promising_.promises(), rows);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
 
@@ -209,6 +209,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
   }
   ranges_.skip(frames);
   promising_.skip(frames);
+  decision_.skip(frames);
   change_degree_ = {};
 }
 
@@ -216,6 +217,7 @@ void Detector::restart() noexcept {
   window_began_ = slices_.frames();
   ranges_.restart();
   promising_.restart();
+  decision_.restart();
   change_degree_ = {};
 }
 
@@ -249,6 +251,7 @@ bool Detector::become_place() noexcept {
     slices_.forget(*taken.slot);
     ranges_.removed(*taken.removed);
     promising_.removed(*taken.removed);
+    decision_.removed(*taken.removed);
   }
   return taken.slot.has_value();
 }

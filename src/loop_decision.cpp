@@ -30,9 +30,11 @@ Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs
 
 }  // namespace
 
-std::optional<BestRow> LoopDecision::decide(
-    std::span<const double> scores, std::span<const CandidateRun> runs, bool keep_rival,
-    std::span<const PromisingRows::Promise> promises) noexcept {
+std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
+                                            std::span<const CandidateRun> runs, bool keep_rival,
+                                            std::span<const PromisingRows::Promise> promises,
+                                            std::size_t rows) noexcept {
+  past_.next();
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
   if (best.scored == 0) return std::nullopt;
   const auto outside = [&](std::size_t row) {
@@ -45,8 +47,14 @@ std::optional<BestRow> LoopDecision::decide(
     });
     if (scored || !outside(promise.centre)) continue;
     ++rival.scored;
-    rival.score = std::min(rival.score, promise.difference);
+    if (promise.difference >= rival.score) continue;
+    rival.row = promise.centre;
+    rival.score = promise.difference;
   }
+  const std::optional<double> past = past_.lowest(best.row, half_window_, rows);
+  past_.remember({best.row, best.score});
+  if (rival.scored > 0) past_.remember({rival.row, rival.score});
+  if (past) rival = {rival.row, std::min(rival.score, *past), rival.scored + 1};
   const std::optional<double> rival_score =
       rival.scored > 0 ? std::optional(rival.score) : last_rival_;
   if (keep_rival) last_rival_ = rival_score;

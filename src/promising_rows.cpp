@@ -18,9 +18,12 @@ constexpr std::size_t looked_at_closely = 16;
 // What is remembered may be faster or slower than it was in the map.
 constexpr std::size_t slack = 1;
 
-// What is remembered is weighed along the window by so many lines and pieces of it.
-constexpr std::size_t lines_weighed = 9;
-constexpr std::size_t frames_weighed = 8;
+// Of so many lines through what is remembered the best is chosen by looking at so many pieces of
+// it, and then weighed by every so many-th frame of the window: rows that are no candidates count
+// as rivals by that.
+constexpr std::size_t lines_tried = 9;
+constexpr std::size_t pieces_tried = 8;
+constexpr std::size_t frames_between = 2;
 
 // Of so many neighbours in a slice only the best is looked at closely.
 constexpr std::size_t neighbours = 16;
@@ -43,23 +46,31 @@ std::size_t slice_of(const MatcherConfig& config, std::size_t places) {
 }  // namespace
 
 PromisingRows::PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places)
-    : ds_(config.sequence_length),
-      vmin_(config.vmin),
-      vmax_(config.vmax),
-      slice_(slice_of(config, places)),
-      near_(config.num / 2) {
+    : ds_(config.sequence_length), slice_(slice_of(config, places)), near_(config.num / 2) {
   const bool used = relocalises(config);
   remembered_ = arena.take<Alike>("rows that look alike", used ? most + 1 : 0);
   promises_ = arena.take<Promise>("promising lines", used ? most : 0);
   best_ = arena.take<Alike>("best rows of a slice", used ? looked_at_closely + 1 : 0);
   bits_ = arena.take<std::uint32_t>("differing bits of a slice", used ? slice_ : 0);
+  behind_ = arena.take<std::uint32_t>("lines tried", used ? lines_tried * (ds_ + 1) : 0);
+  if (!used || arena.measuring()) return;
+  for (std::size_t line = 0; line < lines_tried; ++line) {
+    const double velocity = config.vmin + (config.vmax - config.vmin) * static_cast<double>(line) /
+                                              static_cast<double>(lines_tried - 1);
+    for (std::size_t back = 0; back <= ds_; ++back) {
+      constexpr double half = 0.5;
+      behind_[line * (ds_ + 1) + back] =
+          static_cast<std::uint32_t>(velocity * static_cast<double>(back) + half);
+    }
+  }
 }
 
 PromisingRows::Looks PromisingRows::most_looks(const MatcherConfig& config,
                                                std::size_t places) noexcept {
-  return {slice_of(config, places),
-          (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at +
-              most * lines_weighed * (frames_weighed + 1)};
+  return {
+      slice_of(config, places),
+      (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at +
+          most * (lines_tried * (pieces_tried + 1) + config.sequence_length / frames_between + 1)};
 }
 
 PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const PlaceMap& map,
@@ -75,7 +86,9 @@ PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const P
     // What is remembered goes where count_ is or before, which has been read already.
     look_closely(slices, map, rows, remembered_[i].row + 1);
   }
-  for (const Alike& best : best_of_slice(slices, map, rows)) {
+  const std::span<const Alike> found = best_of_slice(slices, map, rows);
+  for (const Alike& best : found) bring(map, rows, best.row);
+  for (const Alike& best : found) {
     look_closely(slices, map, rows, best.row);
   }
   weigh(slices, map, rows, oldest);
@@ -137,6 +150,16 @@ void PromisingRows::look_closely(const DifferenceSlices& slices, const PlaceMap&
   remember(best);
 }
 
+/// Has the processor fetch what looking closely at a row will read: no frame has left it in the
+/// caches.
+void PromisingRows::bring(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept {
+  const std::size_t reach = slack + (frames_ - 1) * frames_apart;
+  map.order().in_slots(row - std::min(row, reach), std::min(row + slack + 1, rows),
+                       [&](std::size_t, std::size_t slot, std::size_t count) {
+                         map.rows().prefetch_sketches(slot, count);
+                       });
+}
+
 /// Differing bits of a frame, so many before the newest, and the row so many before a row; rows
 /// that are not there look like any other.
 std::uint32_t PromisingRows::differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
@@ -168,33 +191,21 @@ void PromisingRows::remember(Alike alike) noexcept {
   count_ = std::min(count_ + 1, most);
 }
 
-/// Weighs what is remembered along the whole window: by the line of those through it that differs
-/// least.
+/// Weighs what is remembered along the whole window.
 void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
                           std::uint64_t oldest) noexcept {
-  const std::uint64_t reach = slices.frames() - 1 - oldest;
+  const auto reach =
+      static_cast<std::size_t>(std::min<std::uint64_t>(slices.frames() - 1 - oldest, ds_));
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t row = remembered_[i].row;
-    std::array<std::uint32_t, lines_weighed> sums{};
-    std::size_t frames = 0;
-    for (std::size_t piece = 0; piece <= frames_weighed; ++piece) {
-      const std::size_t back = ds_ * piece / frames_weighed;
-      if (back > reach) break;
-      ++frames;
-      std::uint32_t bits = 0;
-      for (std::size_t line = 0; line < lines_weighed; ++line) {
-        // Lines that are still together at this frame look at the same row.
-        const std::size_t behind = rows_behind(line, back);
-        if (line == 0 || behind != rows_behind(line - 1, back)) {
-          bits = differing_bits(slices, map, rows, back, row, behind);
-        }
-        sums[line] += bits;
-      }
+    const std::size_t line = best_line(slices, map, rows, row, reach);
+    std::uint32_t bits = 0;
+    for (std::size_t back = 0; back <= reach; back += frames_between) {
+      bits += differing_bits(slices, map, rows, back, row, rows_behind(line, back));
     }
-    const auto least = std::ranges::min_element(sums);
-    const auto line = static_cast<std::size_t>(std::distance(sums.begin(), least));
+    const std::size_t frames = reach / frames_between + 1;
     const Promise promise{
-        chord(static_cast<double>(*least) / (2.0 * chance * static_cast<double>(frames))),
+        chord(static_cast<double>(bits) / (2.0 * chance * static_cast<double>(frames))),
         row - std::min(row, rows_behind(line, ds_ - ds_ / 2))};
     std::size_t place = i;
     for (; place > 0 && promises_[place - 1].difference > promise.difference; --place) {
@@ -204,12 +215,25 @@ void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, s
   }
 }
 
-/// Rows that a line lies behind its newest one, so many frames before the newest.
-std::size_t PromisingRows::rows_behind(std::size_t line, std::size_t back) const noexcept {
-  constexpr double half = 0.5;
-  const double velocity =
-      vmin_ + (vmax_ - vmin_) * static_cast<double>(line) / static_cast<double>(lines_weighed - 1);
-  return static_cast<std::size_t>(velocity * static_cast<double>(back) + half);
+/// Of the lines that end at a row, the one that looks most alike at a few frames of the window.
+std::size_t PromisingRows::best_line(const DifferenceSlices& slices, const PlaceMap& map,
+                                     std::size_t rows, std::size_t row,
+                                     std::size_t reach) noexcept {
+  std::array<std::uint32_t, lines_tried> sums{};
+  for (std::size_t piece = 0; piece <= pieces_tried; ++piece) {
+    const std::size_t back = ds_ * piece / pieces_tried;
+    if (back > reach) break;
+    std::uint32_t bits = 0;
+    for (std::size_t line = 0; line < lines_tried; ++line) {
+      // Lines that are still together at this frame look at the same row.
+      const std::size_t behind = rows_behind(line, back);
+      if (line == 0 || behind != rows_behind(line - 1, back)) {
+        bits = differing_bits(slices, map, rows, back, row, behind);
+      }
+      sums[line] += bits;
+    }
+  }
+  return static_cast<std::size_t>(std::distance(sums.begin(), std::ranges::min_element(sums)));
 }
 
 void PromisingRows::skip(std::uint64_t frames) noexcept {

@@ -58,7 +58,9 @@ class AdmittedRows {
     std::size_t distances = 0;
   };
   [[nodiscard]] Cost cost(const Window& window, CandidateRun range) const noexcept;
-  void compute(const Window& window, CandidateRun range) noexcept;
+  /// Whether nothing of a range has to be computed.
+  [[nodiscard]] bool complete(const Window& window, CandidateRun range) const noexcept;
+  void compute(const Window& window, CandidateRun range, bool fits) noexcept;
 
   bool limited_;
   std::size_t most_rows_;

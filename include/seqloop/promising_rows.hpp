@@ -70,19 +70,23 @@ class PromisingRows {
                                                      std::size_t rows) noexcept;
   void look_closely(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
                     std::size_t row) noexcept;
+  void bring(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept;
   void scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
             std::span<std::uint32_t> bits) noexcept;
   [[nodiscard]] std::uint32_t differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
                                              std::size_t rows, std::size_t back, std::size_t row,
                                              std::size_t behind) noexcept;
-  [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept;
+  [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept {
+    return behind_[line * (ds_ + 1) + back];
+  }
   void remember(Alike alike) noexcept;
   void weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
              std::uint64_t oldest) noexcept;
+  [[nodiscard]] std::size_t best_line(const DifferenceSlices& slices, const PlaceMap& map,
+                                      std::size_t rows, std::size_t row,
+                                      std::size_t reach) noexcept;
 
   std::size_t ds_;
-  double vmin_;
-  double vmax_;
   std::size_t slice_;
   std::size_t near_;        // rows within which there is one promise
   std::size_t next_ = 0;    // row that the next slice begins at
@@ -94,6 +98,8 @@ class PromisingRows {
   std::span<Alike> best_;          // of the slice, best first
   std::span<Promise> promises_;    // [most], what is remembered along the window, best first
   std::span<std::uint32_t> bits_;  // [slice] of the newest frame
+  // [lines, ds + 1]: rows that a line lies behind its newest one, so many frames before the newest
+  std::span<std::uint32_t> behind_;
 };
 
 }  // namespace seqloop
