@@ -69,9 +69,7 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
 }  // namespace
 
 std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
-  Faults faults = validate(config);
-  for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
-  if (!faults.empty()) throw SetupError(std::move(faults));
+  check(config, capacity);
   std::vector<BufferSize> buffers;
   const Detector measured(Arena(buffers), config, nullptr, capacity, ArenaMemory());
   return buffers;

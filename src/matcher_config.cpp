@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "seqloop/integer_kernels.hpp"
 #include "seqloop/trajectories.hpp"
 
 namespace seqloop {
@@ -122,13 +124,26 @@ Faults validate(const MatcherConfig& config) {
   return faults;
 }
 
-Faults validate(const Capacity& capacity) {
+Faults validate(const Capacity& capacity, const MatcherConfig& config) {
   constexpr auto most_places = static_cast<std::size_t>(
       std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
   Faults faults;
   check_range(faults, "max-places", capacity.places, 1, most_places);
   check_range(faults, "descriptor-size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
+  const bool small = config.arithmetic != Arithmetic::float32 || relocalises(config);
+  if (small && capacity.descriptor_size > most_small_values) {
+    faults.push_back({"arithmetic",
+                      std::to_string(capacity.descriptor_size) + " values are too many for it, " +
+                          std::to_string(most_small_values) + " at most",
+                      "--arithmetic float, and --relocalise off"});
+  }
   return faults;
+}
+
+void check(const MatcherConfig& config, const Capacity& capacity) {
+  Faults faults = validate(config);
+  for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
+  if (!faults.empty()) throw SetupError(std::move(faults));
 }
 
 }  // namespace seqloop

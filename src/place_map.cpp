@@ -11,19 +11,6 @@ namespace {
 // Rows among which the one that is missed least goes, each time a full map thins out.
 constexpr std::size_t thinned_among = 64;
 
-void check(const MatcherConfig& config, const Capacity& capacity) {
-  Faults faults = validate(config);
-  for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
-  const bool small = config.arithmetic != Arithmetic::float32 || relocalises(config);
-  if (small && capacity.descriptor_size > most_small_values) {
-    faults.push_back({"arithmetic",
-                      std::to_string(capacity.descriptor_size) + " values are too many for it, " +
-                          std::to_string(most_small_values) + " at most",
-                      "--arithmetic float, and --relocalise off"});
-  }
-  if (!faults.empty()) throw SetupError(std::move(faults));
-}
-
 }  // namespace
 
 std::vector<BufferSize> PlaceMap::plan(const MatcherConfig& config, const Capacity& capacity) {

@@ -124,6 +124,10 @@ struct Capacity {
 
 /// @return everything that is wrong with the configuration, with the flag's name first.
 [[nodiscard]] Faults validate(const MatcherConfig& config);
-[[nodiscard]] Faults validate(const Capacity& capacity);
+/// @return everything that is wrong with the capacity for this configuration.
+[[nodiscard]] Faults validate(const Capacity& capacity, const MatcherConfig& config);
+
+/// Errors: SetupError with everything that is wrong with either.
+void check(const MatcherConfig& config, const Capacity& capacity);
 
 }  // namespace seqloop

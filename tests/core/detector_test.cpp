@@ -408,8 +408,11 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = -0.1; }), 1U);
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmax = std::nan(""); }), 1U);
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = 1.01, c.vmax = 1.02; }), 1U);
-  EXPECT_EQ(validate(Capacity{0, 0}).size(), 2U);
-  EXPECT_EQ(validate(Capacity{std::size_t{1} << 32U, std::size_t{1} << 22U}).size(), 0U);
+  const MatcherConfig exact = paper(Candidates::all, 20);
+  EXPECT_EQ(validate(Capacity{0, 0}, exact).size(), 2U);
+  EXPECT_EQ(validate(Capacity{std::size_t{1} << 32U, std::size_t{1} << 22U}, exact).size(), 0U);
+  EXPECT_EQ(validate(Capacity{1, most_small_values}, {}).size(), 0U);
+  EXPECT_EQ(validate(Capacity{1, most_small_values + 1}, {}).size(), 1U);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ void bench(const BenchSettings& settings, const Rivals& rivals, Faults faults) {
     config.sequence_length = settings.ds;
     for (Fault& fault : validate(config)) faults.push_back(std::move(fault));
     for (const std::size_t places : settings.places) {
-      for (Fault& fault : validate(Capacity{places, settings.descriptor_size})) {
+      for (Fault& fault : validate(Capacity{places, settings.descriptor_size}, config)) {
         faults.push_back(std::move(fault));
       }
     }

@@ -27,7 +27,7 @@ void plan(const PlanSettings& settings, Faults faults) {
   const MatcherConfig config =
       resolve(settings.matcher, settings.close_loops ? Use::close_loops : Use::localise, faults);
   const Capacity capacity{settings.places, settings.descriptor_size};
-  for (Fault& fault : validate(capacity)) faults.push_back(std::move(fault));
+  for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
   refuse(std::move(faults));
 
   const std::vector<BufferSize> map = PlaceMap::plan(config, capacity);
