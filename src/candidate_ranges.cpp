@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "keep_lowest.hpp"
+
 namespace seqloop {
 namespace {
 
@@ -114,19 +116,12 @@ void CandidateRanges::adapt_k(std::size_t match, double change_degree) noexcept 
 void CandidateRanges::rank(std::span<const double> scores,
                            std::span<const CandidateRun> runs) noexcept {
   ranked_count_ = 0;
-  const auto last_score = [&] { return ranked_[ranked_count_ - 1].score; };
   for (const CandidateRun run : runs) {
     for (std::size_t row = run.first; row < run.last; ++row) {
       const double score = scores[row];
       if (!(score < std::numeric_limits<double>::infinity())) continue;
-      const bool full = ranked_count_ == ranked_.size();
-      if (full && score >= last_score()) continue;
       // Rows come in rising order, so going behind equal scores keeps the lower row first.
-      std::size_t place = full ? ranked_count_ - 1 : ranked_count_++;
-      for (; place > 0 && ranked_[place - 1].score > score; --place) {
-        ranked_[place] = ranked_[place - 1];
-      }
-      ranked_[place] = {score, row};
+      ranked_count_ = keep_lowest(ranked_, ranked_count_, {score, row}, &ScoredRow::score);
     }
   }
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "keep_lowest.hpp"
+
 namespace seqloop {
 namespace {
 
@@ -48,9 +50,9 @@ std::size_t slice_of(const MatcherConfig& config, std::size_t places) {
 PromisingRows::PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places)
     : ds_(config.sequence_length), slice_(slice_of(config, places)), near_(config.num / 2) {
   const bool used = relocalises(config);
-  remembered_ = arena.take<Alike>("rows that look alike", used ? most + 1 : 0);
+  remembered_ = arena.take<Alike>("rows that look alike", used ? most : 0);
   promises_ = arena.take<Promise>("promising lines", used ? most : 0);
-  best_ = arena.take<Alike>("best rows of a slice", used ? looked_at_closely + 1 : 0);
+  best_ = arena.take<Alike>("best rows of a slice", used ? looked_at_closely : 0);
   bits_ = arena.take<std::uint32_t>("differing bits of a slice", used ? slice_ : 0);
   behind_ = arena.take<std::uint32_t>("lines tried", used ? lines_tried * (ds_ + 1) : 0);
   if (!used || arena.measuring()) return;
@@ -114,11 +116,9 @@ std::span<const PromisingRows::Alike> PromisingRows::best_of_slice(const Differe
     std::uint32_t least = some.front();
     for (const std::uint32_t differing : some) least = std::min(least, differing);
     if (found == looked_at_closely && least >= best_[found - 1].bits) continue;
-    std::size_t place = found;
-    for (; place > 0 && best_[place - 1].bits > least; --place) best_[place] = best_[place - 1];
     const auto where = std::distance(some.begin(), std::ranges::find(some, least));
-    best_[place] = {least, (begin + first + static_cast<std::size_t>(where)) % rows};
-    found = std::min(found + 1, looked_at_closely);
+    const std::size_t row = (begin + first + static_cast<std::size_t>(where)) % rows;
+    found = keep_lowest(best_, found, {least, row}, &Alike::bits);
   }
   return best_.first(found);
 }
@@ -174,21 +174,16 @@ std::uint32_t PromisingRows::differing_bits(const DifferenceSlices& slices, cons
 /// Keeps a promise if it is among the best, and the best of those near it.
 void PromisingRows::remember(Alike alike) noexcept {
   const auto begin = remembered_.begin();
-  auto end = begin + static_cast<std::ptrdiff_t>(count_);
+  const auto end = begin + static_cast<std::ptrdiff_t>(count_);
   const auto near = std::find_if(begin, end, [&](const Alike& other) {
     return other.row <= alike.row + near_ && alike.row <= other.row + near_;
   });
   if (near != end) {
     if (near->bits <= alike.bits) return;
     std::move(near + 1, end, near);
-    --end;
     --count_;
   }
-  const auto place =
-      std::find_if(begin, end, [&](const Alike& other) { return alike.bits < other.bits; });
-  std::move_backward(place, end, end + 1);
-  *place = alike;
-  count_ = std::min(count_ + 1, most);
+  count_ = keep_lowest(remembered_, count_, alike, &Alike::bits);
 }
 
 /// Weighs what is remembered along the whole window.
@@ -207,11 +202,7 @@ void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, s
     const Promise promise{
         chord(static_cast<double>(bits) / (2.0 * chance * static_cast<double>(frames))),
         row - std::min(row, rows_behind(line, ds_ - ds_ / 2))};
-    std::size_t place = i;
-    for (; place > 0 && promises_[place - 1].difference > promise.difference; --place) {
-      promises_[place] = promises_[place - 1];
-    }
-    promises_[place] = promise;
+    keep_lowest(promises_, i, promise, &Promise::difference);
   }
 }
 

@@ -94,7 +94,7 @@ class PromisingRows {
   std::size_t scanned_ = 0;
   std::size_t sketches_ = 0;
   std::size_t count_ = 0;
-  std::span<Alike> remembered_;    // [most + 1], best first
+  std::span<Alike> remembered_;    // [most], best first
   std::span<Alike> best_;          // of the slice, best first
   std::span<Promise> promises_;    // [most], what is remembered along the window, best first
   std::span<std::uint32_t> bits_;  // [slice] of the newest frame
