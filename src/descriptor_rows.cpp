@@ -26,11 +26,15 @@ std::size_t words_of(const DescriptorForm& form) {
   return form.relocalising ? DescriptorRows::close_words : 0;
 }
 
-/// Calls `work(begin, count)` for pieces of at most `abreast`.
+// The same of several queries at once: of so many rows, what is not near any more when the queries
+// go on at the other end of their ring is still in the second-level cache.
+constexpr std::size_t block_abreast = 96;
+
+/// Calls `work(begin, count)` for pieces of at most `most`.
 template <class Work>
-void in_pieces(std::size_t count, Work work) {
-  for (std::size_t begin = 0; begin < count; begin += abreast) {
-    work(begin, std::min(abreast, count - begin));
+void in_pieces(std::size_t count, std::size_t most, Work work) {
+  for (std::size_t begin = 0; begin < count; begin += most) {
+    work(begin, std::min(most, count - begin));
   }
 }
 
@@ -112,7 +116,7 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
                              std::span<std::uint16_t> out) const noexcept {
   if (form_.arithmetic == Arithmetic::sketch) {
     std::array<std::uint32_t, abreast> bits;
-    in_pieces(out.size(), [&](std::size_t begin, std::size_t count) {
+    in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
       kernels_->hamming_column(&queries.sketches_[query * words_],
                                &sketches_[(first + begin) * words_], words_, count, bits.data());
       std::ranges::transform(std::span(bits).first(count), out.subspan(begin).begin(),
@@ -121,7 +125,7 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
     return;
   }
   std::array<std::int32_t, abreast> dots;
-  in_pieces(out.size(), [&](std::size_t begin, std::size_t count) {
+  in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
     const std::size_t row = first + begin;
     kernels_->dot_column(queries.small(query).data(), small(row).data(), stride_, count,
                          dots.data());
@@ -132,15 +136,21 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
                              std::span<const std::span<std::uint16_t>> out) const noexcept {
-  std::array<std::int32_t, most_at_once * abreast> dots;
-  in_pieces(out.front().size(), [&](std::size_t begin, std::size_t count) {
-    kernels_->dot_block(queries.small(query).data(), out.size(), small(begin).data(), stride_,
-                        count, dots.data(), abreast);
-    for (std::size_t q = 0; q < out.size(); ++q) {
-      fixed_distances(std::span(dots).subspan(q * abreast, count),
-                      queries.inverse_lengths_[query + q], inverse_lengths_.subspan(begin, count),
-                      out[q].subspan(begin, count));
-    }
+  if (out.empty()) return;
+  std::array<std::int32_t, most_at_once * block_abreast> dots;
+  in_pieces(out.front().size(), block_abreast, [&](std::size_t begin, std::size_t count) {
+    const auto compare_with = [&](std::size_t first, std::span<const std::span<std::uint16_t>> to) {
+      kernels_->dot_block(queries.small(first).data(), to.size(), small(begin).data(), stride_,
+                          count, dots.data(), block_abreast);
+      for (std::size_t q = 0; q < to.size(); ++q) {
+        fixed_distances(std::span(dots).subspan(q * block_abreast, count),
+                        queries.inverse_lengths_[first + q], inverse_lengths_.subspan(begin, count),
+                        to[q].subspan(begin, count));
+      }
+    };
+    const std::size_t before_end = std::min(out.size(), queries.inverse_lengths_.size() - query);
+    compare_with(query, out.first(before_end));
+    if (before_end < out.size()) compare_with(0, out.subspan(before_end));
   });
 }
 

@@ -47,7 +47,8 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
 Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descriptor_size()}; }
 
 /// Query descriptors that must be kept: the window's, and what the change degree of its centre
-/// looks back on. A whole number of what is taken at once, so that this lies in one piece.
+/// looks back on. A whole number of what is taken at once, so that this lies in one piece unless
+/// some came by themselves.
 std::size_t history(const MatcherConfig& config) {
   const std::size_t ds = config.sequence_length;
   const std::size_t kept = std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);

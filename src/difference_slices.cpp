@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace seqloop {
 namespace {
@@ -17,6 +18,14 @@ std::size_t columns_of(const MatcherConfig& config) {
   return config.sequence_length + config.frames_at_once;
 }
 
+/// How far beyond its ends a column may be read: as far as the diagonals around a row's own leave
+/// it within a window, and the rest of a vector.
+std::size_t margin_of(const MatcherConfig& config) {
+  constexpr double vector = 32.0;
+  const double half = static_cast<double>(config.sequence_length / 2 + 1);
+  return static_cast<std::size_t>(std::ceil(half * std::max(config.vmax, 2.0) + vector));
+}
+
 }  // namespace
 
 DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
@@ -29,13 +38,14 @@ DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, st
       queries_(arena, {"query descriptors", "lengths of query descriptors", "query sketches"},
                DescriptorForm(config, capacity.descriptor_size), history),
       exact_(arena, "difference slices", "filled parts of the slices",
-             whole_ ? 0 : columns_of(config), capacity.places),
+             whole_ ? 0 : columns_of(config), capacity.places, margin_of(config)),
       enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
-                whole_ || !enhance_ ? 0 : columns_of(config), capacity.places),
+                whole_ || !enhance_ ? 0 : columns_of(config), capacity.places, margin_of(config)),
       whole_differences_(arena, "difference slices", "filled parts of the slices",
-                         whole_ ? columns_of(config) : 0, capacity.places),
+                         whole_ ? columns_of(config) : 0, capacity.places, margin_of(config)),
       whole_enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
-                      whole_ && enhance_ ? columns_of(config) : 0, capacity.places) {}
+                      whole_ && enhance_ ? columns_of(config) : 0, capacity.places,
+                      margin_of(config)) {}
 
 void DifferenceSlices::push(std::span<const float> descriptor) noexcept {
   queries_.store(row_of(frames_++), descriptor);
@@ -94,16 +104,11 @@ std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std
 
 void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexcept {
   std::array<std::span<std::uint16_t>, DescriptorRows::most_at_once> columns;
-  for (std::uint64_t frame = frames_ - count; frame < frames_;) {
-    // Queries lie in a ring: up to its end in one piece.
-    const std::size_t piece =
-        std::min(static_cast<std::size_t>(frames_ - frame), history_ - row_of(frame));
-    for (std::size_t i = 0; i < piece; ++i) {
-      columns[i] = whole_differences_.take_over(frame + i, map.size());
-    }
-    map.rows().compare(queries_, row_of(frame), std::span(columns).first(piece));
-    frame += piece;
+  const std::uint64_t first = frames_ - count;
+  for (std::size_t i = 0; i < count; ++i) {
+    columns[i] = whole_differences_.take_over(first + i, map.size());
   }
+  map.rows().compare(queries_, row_of(first), std::span(columns).first(count));
 }
 
 std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
 
@@ -12,11 +13,11 @@ static_assert(FLT_EVAL_METHOD == 0, "every operation has to round as IEEE 754 sa
 
 constexpr double largest = 127.0;
 
-/// To the nearest integer, halves to the even one, for |x| below 2^51: what is added leaves no room
-/// for a fraction.
-double rounded(double x) noexcept {
+/// To the nearest integer, halves to the even one, for values whose integer fits a byte: what is
+/// added leaves no room for a fraction, so that the lowest byte is the integer's.
+std::int8_t rounded(double x) noexcept {
   constexpr double no_fraction = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + no_fraction) - no_fraction;
+  return static_cast<std::int8_t>(std::bit_cast<std::int64_t>(x + no_fraction));
 }
 
 /// The largest of all without their signs. In lanes, because the next comparison of one would have
@@ -46,11 +47,13 @@ Quantised quantise(std::span<const float> descriptor, std::span<std::int8_t> out
     return {0.0F, 0};
   }
   const double factor = largest / static_cast<double>(highest);
-  std::int32_t squares = 0;
   for (std::size_t i = 0; i < descriptor.size(); ++i) {
-    const auto value =
-        static_cast<std::int32_t>(rounded(static_cast<double>(descriptor[i]) * factor));
-    out[i] = static_cast<std::int8_t>(value);
+    out[i] = rounded(static_cast<double>(descriptor[i]) * factor);
+  }
+  std::int32_t squares = 0;
+  for (const std::int8_t byte : out.first(descriptor.size())) {
+    // Of 16 bits, because processors multiply and add these in one go.
+    const std::int16_t value = byte;
     squares += value * value;
   }
   return {static_cast<float>(static_cast<double>(highest) / largest), squares};

@@ -1,6 +1,8 @@
 #include "seqloop/sequence_search.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <limits>
 #include <type_traits>
 
@@ -10,12 +12,19 @@ namespace {
 // Rows scored side by side: at usual sequence lengths their sums stay in the second-level cache.
 constexpr std::size_t block_rows = 128;
 
-/// How far lines leave the diagonals of velocity 1 through their centre rows, and in how many
-/// pieces they run along them.
+// Sums are gone on with in whole vectors of so many, the widest that any processor has.
+constexpr std::size_t vector_lanes = 16;
+
+std::size_t whole_vectors(std::size_t count) {
+  return (count + vector_lanes - 1) / vector_lanes * vector_lanes;
+}
+
+/// How far lines leave the diagonals of velocity 1 through their centre rows, and how often they
+/// change from one to the next.
 struct Shape {
   std::int64_t below = 0;
   std::int64_t above = 0;
-  std::size_t segments = 0;
+  std::int64_t changes = 0;
 };
 
 /// Diagonals that a line lies above its centre row's own, at column i of the window.
@@ -31,7 +40,7 @@ Shape shape_of(std::size_t ds, VelocityRange velocities) {
       const std::int64_t here = diagonal(m, i, ds);
       shape.below = std::max(shape.below, -here);
       shape.above = std::max(shape.above, here);
-      if (i == 0 || here != diagonal(m, i - 1, ds)) ++shape.segments;
+      if (i > 0) shape.changes += std::abs(here - diagonal(m, i - 1, ds));
     }
   }
   return shape;
@@ -49,65 +58,107 @@ SequenceSearch::SequenceSearch(Arena& arena, const Trajectories& trajectories,
   const VelocityRange velocities = velocity_range(ds, config.vmin, config.vmax);
   const Shape shape = shape_of(ds, velocities);
   below_ = static_cast<std::size_t>(shape.below);
-  stride_ = block_rows + static_cast<std::size_t>(shape.below + shape.above);
+  around_ = static_cast<std::size_t>(shape.below + shape.above);
+  stride_ = whole_vectors(block_rows + around_);
   const bool whole = config.arithmetic != Arithmetic::float32;
-  segments_ = arena.take<LineSegment>("pieces of lines", shape.segments);
-  line_begins_ = arena.take<std::uint32_t>("first pieces of lines", velocities.count() + 1);
-  const std::size_t sums = (ds + 2) * stride_;
-  whole_sums_ = arena.take<std::uint32_t>("sums along diagonals", whole ? sums : 0);
-  whole_lowest_ = arena.take<std::uint32_t>("lowest sums", whole ? block_rows : 0);
-  sums_ = arena.take<double>("sums along diagonals", whole ? 0 : sums);
-  lowest_ = arena.take<double>("lowest sums", whole ? 0 : block_rows);
+  through_ = arena.take<LineThroughSums>("lines through sums", velocities.count());
+  changes_ =
+      arena.take<std::uint32_t>("changes of diagonal", static_cast<std::size_t>(shape.changes));
+  const std::size_t sums = (ds + 1) * stride_;
+  const bool gathered = config.full_map != FullMap::refuse;
+  if (whole) {
+    whole_sums_ = arena.take<std::uint32_t>("sums along diagonals", sums);
+    whole_lowest_ = arena.take<std::uint32_t>("lowest sums", block_rows);
+    whole_columns_.take(arena, ds + 1, stride_, gathered);
+  } else {
+    sums_ = arena.take<double>("sums along diagonals", sums);
+    lowest_ = arena.take<double>("lowest sums", block_rows);
+    columns_.take(arena, ds + 1, stride_, gathered);
+  }
   block_lines_ = arena.take<std::uint32_t>("lines of the lowest sums", block_rows);
   if (arena.measuring()) return;
 
-  std::size_t count = 0;
-  for (std::int64_t m = velocities.first; m <= velocities.last; ++m) {
-    for (std::size_t i = 0; i <= ds; ++i) {
-      const std::int64_t here = diagonal(m, i, ds);
-      const auto column =
-          static_cast<std::uint32_t>(static_cast<std::int64_t>(i * stride_) + shape.below + here);
-      if (i == 0 || here != diagonal(m, i - 1, ds)) segments_[count++].begin = column;
-      segments_[count - 1].end = column + static_cast<std::uint32_t>(stride_);
+  std::uint32_t count = 0;
+  for (std::size_t line = 0; line < through_.size(); ++line) {
+    const std::int64_t m = velocities.first + static_cast<std::int64_t>(line);
+    LineThroughSums& through = through_[line];
+    through.first_change = count;
+    through.rises = m > static_cast<std::int64_t>(ds);
+    std::int64_t here = diagonal(m, 0, ds);
+    for (std::size_t i = 1; i <= ds; ++i) {
+      for (const std::int64_t next = diagonal(m, i, ds); here != next;) {
+        here += through.rises ? 1 : -1;
+        const std::int64_t lower = through.rises ? here - 1 : here;
+        changes_[count++] =
+            static_cast<std::uint32_t>(i * stride_ + static_cast<std::size_t>(shape.below + lower));
+      }
     }
-    line_begins_[static_cast<std::size_t>(m - velocities.first) + 1] =
-        static_cast<std::uint32_t>(count);
+    through.last_change = count;
+    through.end = static_cast<std::uint32_t>(shape.below + here);
   }
+}
+
+template <class Value>
+void SequenceSearch::Columns<Value>::take(Arena& arena, std::size_t window, std::size_t stride,
+                                          bool gathered) {
+  begins = arena.take<const Value*>("columns of the window", window);
+  values = arena.take<const Value*>("columns of the window", window);
+  in_order = arena.take<Value>("differences in order", gathered ? window * (stride + 1) : 0);
 }
 
 std::size_t SequenceSearch::score(const DifferenceSlices& slices, const PlaceOrder& order,
                                   std::uint64_t oldest, CandidateRun run,
                                   std::size_t rows) noexcept {
+  const double scale = 1.0 / (slices.unit() * static_cast<double>(trajectories_->window()));
+  return slices.whole()
+             ? score_run(slices, order, oldest, run, rows, scale, whole_columns_, whole_sums_,
+                         whole_lowest_)
+             : score_run(slices, order, oldest, run, rows, scale, columns_, sums_, lowest_);
+}
+
+template <class Value, class Sum>
+std::size_t SequenceSearch::score_run(const DifferenceSlices& slices, const PlaceOrder& order,
+                                      std::uint64_t oldest, CandidateRun run, std::size_t rows,
+                                      double scale, Columns<Value>& columns, std::span<Sum> sums,
+                                      std::span<Sum> lowest) noexcept {
+  for (std::size_t i = 0; i < trajectories_->window(); ++i) {
+    columns.begins[i] = slices.column(oldest + i, Value{});
+  }
   std::size_t line_sums = 0;
   for (std::size_t first = run.first; first < run.last; first += block_rows) {
     const CandidateRun block{first, std::min(first + block_rows, run.last)};
-    line_sums += slices.whole()
-                     ? score_block<std::uint16_t>(slices, order, oldest, block, rows, whole_sums_,
-                                                  whole_lowest_)
-                     : score_block<float>(slices, order, oldest, block, rows, sums_, lowest_);
+    add_up(order, block, columns);
+    line_sums += score_block<Sum>(block, rows, scale, sums, lowest);
   }
   return line_sums;
 }
 
-template <class Value, class Sum>
-std::size_t SequenceSearch::score_block(const DifferenceSlices& slices, const PlaceOrder& order,
-                                        std::uint64_t oldest, CandidateRun block, std::size_t rows,
-                                        std::span<Sum> sums, std::span<Sum> lowest) noexcept {
-  add_up<Value>(slices, order, oldest, block, rows, sums);
+template <class Sum>
+std::size_t SequenceSearch::score_block(CandidateRun block, std::size_t rows, double scale,
+                                        std::span<const Sum> sums, std::span<Sum> lowest) noexcept {
   std::ranges::fill(lowest, std::numeric_limits<Sum>::max());
+  const std::size_t size = block.last - block.first;
+  const std::size_t count = trajectories_->count();
+  const auto furthest_below = static_cast<std::size_t>(-trajectories_->lowest(0));
+  const auto furthest_above =
+      static_cast<std::size_t>(trajectories_->highest(trajectories_->window() - 1));
   std::size_t line_sums = 0;
-  for (std::size_t line = 0; line < trajectories_->count(); ++line) {
-    const std::span<const std::int32_t> offsets = trajectories_->offsets(line);
-    const auto below = static_cast<std::size_t>(-offsets.front());
-    const auto above = static_cast<std::size_t>(offsets.back());
-    if (rows <= above) continue;
-    const std::size_t first = std::max(block.first, below);
-    const std::size_t last = std::min(block.last, rows - above);
-    if (first >= last) continue;
-    lowest_of(sums, line, {first - block.first, last - block.first}, lowest);
-    line_sums += last - first;
+  if (block.first >= furthest_below && block.last + furthest_above <= rows) {
+    lowest_of(sums, {0, count}, {0, std::is_integral_v<Sum> ? whole_vectors(size) : size}, lowest);
+    line_sums = count * size;
+  } else {
+    for (std::size_t line = 0; line < count; ++line) {
+      const std::span<const std::int32_t> offsets = trajectories_->offsets(line);
+      const auto below = static_cast<std::size_t>(-offsets.front());
+      const auto above = static_cast<std::size_t>(offsets.back());
+      if (rows <= above) continue;
+      const std::size_t first = std::max(block.first, below);
+      const std::size_t last = std::min(block.last, rows - above);
+      if (first >= last) continue;
+      lowest_of(sums, {line, line + 1}, {first - block.first, last - block.first}, lowest);
+      line_sums += last - first;
+    }
   }
-  const double scale = 1.0 / (slices.unit() * static_cast<double>(trajectories_->window()));
   for (std::size_t row = block.first; row < block.last; ++row) {
     const Sum sum = lowest[row - block.first];
     scores_[row] = sum == std::numeric_limits<Sum>::max() ? std::numeric_limits<double>::infinity()
@@ -117,63 +168,93 @@ std::size_t SequenceSearch::score_block(const DifferenceSlices& slices, const Pl
   return line_sums;
 }
 
-/// Sums of differences along the diagonals through a block of rows and through those around it that
-/// its lines can change to: before each column of the window, and behind the last. What was not
-/// computed is added too, and taken off again with each piece of a line, which begins behind it.
-template <class Value, class Sum>
-void SequenceSearch::add_up(const DifferenceSlices& slices, const PlaceOrder& order,
-                            std::uint64_t oldest, CandidateRun block, std::size_t rows,
-                            std::span<Sum> sums) const noexcept {
-  const std::size_t around = stride_ - block_rows;
-  const auto diagonals = static_cast<std::int64_t>(block.last - block.first + around);
-  std::ranges::fill(sums.first(static_cast<std::size_t>(diagonals)), Sum{0});
+/// Sums up the diagonals through a block of rows and those around it that its lines can change to:
+/// first whole ones; then, before each column but the first, what each has more than the next.
+/// Differences that were not computed, or lie beyond the map's ends, are added too and taken off
+/// again by each line, which does not touch them.
+template <class Value>
+void SequenceSearch::add_up(const PlaceOrder& order, CandidateRun block,
+                            Columns<Value>& columns) noexcept {
+  const std::size_t diagonals = whole_vectors(block.last - block.first + around_);
   for (std::size_t i = 0; i < trajectories_->window(); ++i) {
-    const Value* const column = slices.column(oldest + i, Value{});
-    const Sum* const before = &sums[i * stride_];
-    Sum* const behind = &sums[(i + 1) * stride_];
-    // The row at this column of the block's first diagonal; rows that are not there add nothing.
+    // The row at this column of the block's first diagonal.
     const std::int64_t row = static_cast<std::int64_t>(block.first + i) -
                              static_cast<std::int64_t>(below_ + trajectories_->centre());
-    const std::int64_t first = std::clamp<std::int64_t>(-row, 0, diagonals);
-    const std::int64_t last =
-        std::clamp<std::int64_t>(static_cast<std::int64_t>(rows) - row, first, diagonals);
-    std::copy_n(before, first, behind);
-    if (!order.straight()) {
-      for (std::int64_t d = first; d < last; ++d) {
-        const std::size_t slot = order.slot(static_cast<std::size_t>(row + d));
-        behind[d] = before[d] + static_cast<Sum>(column[slot]);
-      }
-    } else if constexpr (std::is_same_v<Value, std::uint16_t>) {
-      kernels_->add_column(before + first, column + row + first,
-                           static_cast<std::size_t>(last - first), behind + first);
-    } else {
-      for (std::int64_t d = first; d < last; ++d) {
-        behind[d] = before[d] + static_cast<Sum>(column[row + d]);
+    if (order.straight()) {
+      columns.values[i] = columns.begins[i] + row;
+      continue;
+    }
+    Value* const in_order = &columns.in_order[i * (stride_ + 1)];
+    const auto rows = static_cast<std::int64_t>(order.size());
+    for (std::size_t d = 0; d <= diagonals; ++d) {
+      const std::int64_t r = row + static_cast<std::int64_t>(d);
+      const bool there = r >= 0 && r < rows;
+      in_order[d] = there ? columns.begins[i][order.slot(static_cast<std::size_t>(r))] : Value{0};
+    }
+    columns.values[i] = in_order;
+  }
+  sum_diagonals(columns.values, diagonals);
+}
+
+void SequenceSearch::sum_diagonals(std::span<const float* const> values,
+                                   std::size_t count) noexcept {
+  double* const sums = sums_.data();
+  std::fill_n(sums, count, 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float* const column = values[i];
+    if (i == 1) std::fill_n(sums + stride_, count, 0.0);
+    double* const apart = sums + i * stride_;
+    if (i > 0) {
+      const double* const before = i == 1 ? apart : apart - stride_;
+      const float* const last = values[i - 1];
+      for (std::size_t d = 0; d < count; ++d) {
+        apart[d] = before[d] + (static_cast<double>(last[d]) - static_cast<double>(last[d + 1]));
       }
     }
-    std::copy(before + last, before + diagonals, behind + last);
+    for (std::size_t d = 0; d < count; ++d) sums[d] += static_cast<double>(column[d]);
   }
 }
 
-void SequenceSearch::lowest_of(std::span<const double> sums, std::size_t line, CandidateRun part,
+void SequenceSearch::sum_diagonals(std::span<const std::uint16_t* const> values,
+                                   std::size_t count) noexcept {
+  kernels_->sum_diagonals(values.data(), values.size(), count, stride_, whole_sums_.data());
+}
+
+void SequenceSearch::lowest_of(std::span<const double> sums, LineRun lines, CandidateRun part,
                                std::span<double> lowest) noexcept {
-  for (std::size_t row = part.first; row < part.last; ++row) {
-    double sum = 0.0;
-    for (const LineSegment& segment : segments(line)) {
-      sum += sums[segment.end + row] - sums[segment.begin + row];
+  constexpr std::size_t abreast = 8;
+  for (std::size_t line = lines.first; line < lines.last; ++line) {
+    std::size_t row = part.first;
+    for (; row + abreast <= part.last; row += abreast) {
+      keep_lower<abreast>(sums, line, row, lowest);
     }
-    if (sum >= lowest[row]) continue;
-    lowest[row] = sum;
-    block_lines_[row] = static_cast<std::uint32_t>(line);
+    for (; row < part.last; ++row) keep_lower<1>(sums, line, row, lowest);
   }
 }
 
-void SequenceSearch::lowest_of(std::span<const std::uint32_t> sums, std::size_t line,
+template <std::size_t abreast>
+void SequenceSearch::keep_lower(std::span<const double> sums, std::size_t line, std::size_t first,
+                                std::span<double> lowest) noexcept {
+  const LineThroughSums& through = through_[line];
+  std::array<double, abreast> apart{};
+  for (std::uint32_t c = through.first_change; c < through.last_change; ++c) {
+    const double* const change = &sums[changes_[c] + first];
+    for (std::size_t i = 0; i < abreast; ++i) apart[i] += change[i];
+  }
+  for (std::size_t i = 0; i < abreast; ++i) {
+    const double whole = sums[through.end + first + i];
+    const double sum = through.rises ? whole + apart[i] : whole - apart[i];
+    if (sum >= lowest[first + i]) continue;
+    lowest[first + i] = sum;
+    block_lines_[first + i] = static_cast<std::uint32_t>(line);
+  }
+}
+
+void SequenceSearch::lowest_of(std::span<const std::uint32_t> sums, LineRun lines,
                                CandidateRun part, std::span<std::uint32_t> lowest) noexcept {
-  const std::span<const LineSegment> pieces = segments(line);
-  kernels_->lowest_lines(&sums[part.first], pieces.data(), pieces.size(), part.last - part.first,
-                         static_cast<std::uint32_t>(line), &lowest[part.first],
-                         &block_lines_[part.first]);
+  kernels_->lowest_lines(&sums[part.first], changes_.data(), &through_[lines.first],
+                         lines.last - lines.first, static_cast<std::uint32_t>(lines.first),
+                         part.last - part.first, &lowest[part.first], &block_lines_[part.first]);
 }
 
 }  // namespace seqloop

@@ -24,13 +24,16 @@ class ColumnRing {
       std::is_floating_point_v<Value> ? Value(-1) : std::numeric_limits<Value>::max();
 
   /// @param name, marks what the buffers are called in a plan
+  /// @param margin values that may be read before a column's first row and behind its last,
+  ///   whatever they are
   /// Allocates: from the arena only.
   ColumnRing(Arena& arena, std::string_view name, std::string_view marks, std::size_t columns,
-             std::size_t rows)
+             std::size_t rows, std::size_t margin)
       : columns_(columns),
         rows_(rows),
         blocks_((rows + block_rows - 1) / block_rows),
-        values_(arena.take<Value>(name, columns * rows)),
+        values_(between_margins(
+            arena.take<Value>(name, columns > 0 ? columns * rows + 2 * margin : 0), margin)),
         block_frames_(arena.take<std::uint64_t>(marks, columns * blocks_)),
         filled_(arena.take<Filled>(marks, columns)) {}
 
@@ -111,7 +114,7 @@ class ColumnRing {
   }
 
   /// @param frame one of the newest `columns` frames
-  /// @return [rows], meaningful where filled
+  /// @return [rows], meaningful where filled; `margin` values before and behind may be read too
   [[nodiscard]] const Value* column(std::uint64_t frame) const noexcept {
     return values_.data() + slot(frame) * rows_;
   }
@@ -129,6 +132,10 @@ class ColumnRing {
     std::uint64_t frame;  // whose column it is, and one: 0 is nobody's
     std::size_t to;       // rows before this one are all there
   };
+
+  [[nodiscard]] static std::span<Value> between_margins(std::span<Value> all, std::size_t margin) {
+    return all.empty() ? all : all.subspan(margin, all.size() - 2 * margin);
+  }
 
   [[nodiscard]] std::size_t slot(std::uint64_t frame) const noexcept {
     return static_cast<std::size_t>(frame % columns_);

@@ -59,7 +59,7 @@ class DescriptorRows {
                std::span<std::uint16_t> out) const noexcept;
 
   /// The same of several descriptors, reading each row once for all of them; `int8` alone.
-  /// @param query rows of the queries from this one on
+  /// @param query rows of the queries from this one on; behind their last follows their first
   /// @param out   one column a query, at most `most_at_once`
   void compare(const DescriptorRows& queries, std::size_t query,
                std::span<const std::span<std::uint16_t>> out) const noexcept;

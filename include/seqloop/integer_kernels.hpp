@@ -19,11 +19,14 @@ inline constexpr std::size_t stored_line = 64;
 /// 127 * 127 * 2^17 < 2^31.
 inline constexpr std::size_t most_small_values = std::size_t{1} << 17U;
 
-/// One stretch of a line through sums: what is added from begin (left out) to end, as the
-/// difference of two sums from the start. Both are offsets into the same values.
-struct LineSegment {
+/// A line through sums along diagonals, as offsets into one array: the whole sum of the diagonal
+/// that it ends on; and where it changed from a diagonal to the next one, what the two had apart
+/// there, added where it rises and taken off where it falls.
+struct LineThroughSums {
   std::uint32_t end;
-  std::uint32_t begin;
+  std::uint32_t first_change;  // among the changes of all lines
+  std::uint32_t last_change;   // left out
+  bool rises;
 };
 
 /// Sums over int8 vectors, over bits and along lines, made for one kind of processor. Integers have
@@ -75,23 +78,26 @@ struct IntegerKernels {
   void (*hamming_column)(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
 
-  /// Goes on with sums: after[j] = before[j] + values[j], modulo 2^32.
-  /// @param before, values, after [count]. Work: count adds.
-  void (*add_column)(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                     std::uint32_t* after) noexcept;
+  /// Sums up diagonals, modulo 2^32: sums[j] is the sum of values[i][j] over all i; and before each
+  /// i but the first, sums[i * stride + j] is what j has more so far than j + 1.
+  /// @param values [window] pointers to [count + 1]   @param window above 0
+  /// @param sums   [window, stride] the first `count` of each written
+  /// Work: 3 window * count adds.
+  void (*sum_diagonals)(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                        std::size_t stride, std::uint32_t* sums) noexcept;
 
   /// Keeps, for consecutive columns, the line with the lowest sum. Column j's sum is that of
-  /// prefix[end + j] - prefix[begin + j] over all segments, modulo 2^32: right where the true sum
-  /// fits 32 bits, even if what `prefix` adds up does not. Of equal sums, the earlier call's stays.
-  /// @param prefix   read at [offset, offset + count) for all offsets in `segments`
-  /// @param segments [segment_count]
-  /// @param line     the number of the line
-  /// @param best     [count] lowest sums so far, read and written
-  /// @param lines    [count] whose they are, read and written
-  /// Work: segment_count * count adds and subtractions.
-  void (*lowest_lines)(const std::uint32_t* prefix, const LineSegment* segments,
-                       std::size_t segment_count, std::size_t count, std::uint32_t line,
-                       std::uint32_t* best, std::uint32_t* lines) noexcept;
+  /// sums[end + j] and all sums[change + j], modulo 2^32: right where the true sum fits 32 bits,
+  /// even if what was added up does not. Of equal sums, the earlier line's stays.
+  /// @param sums    read at [offset, offset + count) for the ends and changes of the lines
+  /// @param changes of all lines
+  /// @param lines   [line_count]   @param number of the first of them
+  /// @param best    [count] lowest sums so far, read and written
+  /// @param best_lines [count] the numbers of their lines, read and written
+  /// Work: count adds for each end and each change.
+  void (*lowest_lines)(const std::uint32_t* sums, const std::uint32_t* changes,
+                       const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                       std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
 };
 
 /// All variants that this library was built with, the best first, the one in plain C++ last. Not

@@ -14,15 +14,16 @@ void hamming_column_avx512(const std::uint64_t* query, const std::uint64_t* rows
   hamming_column<HighwayDifferences>(query, rows, words, count, bits);
 }
 
-void add_column_avx512(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                       std::uint32_t* after) noexcept {
-  add_column<HighwayLanes>(before, values, count, after);
+void sum_diagonals_avx512(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                          std::size_t stride, std::uint32_t* sums) noexcept {
+  sum_diagonals<HighwayLanes>(values, window, count, stride, sums);
 }
 
-void lowest_lines_avx512(const std::uint32_t* prefix, const LineSegment* segments,
-                         std::size_t segment_count, std::size_t count, std::uint32_t line,
-                         std::uint32_t* best, std::uint32_t* lines) noexcept {
-  lowest_lines<HighwayLanes>(prefix, segments, segment_count, count, line, best, lines);
+void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes,
+                         const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                         std::size_t count, std::uint32_t* best,
+                         std::uint32_t* best_lines) noexcept {
+  lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
 constinit const IntegerKernels avx512 =

@@ -11,7 +11,7 @@ constinit const IntegerKernels avx512_vnni{"avx512-vnni",
                                            &dot_block<Vnni512Products>,
                                            &hamming_avx512,
                                            &hamming_column_avx512,
-                                           &add_column_avx512,
+                                           &sum_diagonals_avx512,
                                            &lowest_lines_avx512};
 
 }  // namespace seqloop::kernels

@@ -21,6 +21,7 @@ struct Products {
   static constexpr std::size_t step = 32;
   static constexpr std::uint32_t row_offset = 128;
   static constexpr std::size_t block_queries = 4;
+  static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 8;
 
   static Sum zero() noexcept { return {_mm256_setzero_si256()}; }
@@ -53,7 +54,7 @@ struct Products {
 
 constinit const IntegerKernels avx_vnni{
     "avx-vnni",           &has_avx_vnni, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_avx2, &hamming_column_avx2, &add_column_avx2,
+    &dot_block<Products>, &hamming_avx2, &hamming_column_avx2, &sum_diagonals_avx2,
     &lowest_lines_avx2};
 
 }  // namespace seqloop::kernels

@@ -8,8 +8,8 @@
 //   Sum add(Sum, Row, Query)
 //   totals(sums of sums_together, out), modulo 2^32
 //   uint32 row_offset: what `row` makes every value larger by; where it does, Row one()
-//   block_queries, column_rows: powers of two; as many sums side by side as there are registers,
-//   of that many queries with two rows, or of one query with that many rows }
+//   block_queries, block_rows: so many queries with so many rows are as many sums side by side as
+//   there are registers; column_rows: the same of one query with so many rows }
 namespace seqloop::kernels {
 
 /// Bytes of queries that stay in the nearest cache while rows pass by.
@@ -27,13 +27,21 @@ std::uint32_t excess(const std::int8_t* query, std::size_t size) noexcept {
     typename Products::Sum sums[sums_together];
     for (auto& sum : sums) sum = Products::zero();
     std::size_t i = 0;
+    for (; i + sums_together * Products::step <= size; i += sums_together * Products::step) {
+      for (std::size_t s = 0; s < sums_together; ++s) {
+        sums[s] = Products::add(sums[s], Products::one(),
+                                Products::query(query + i + s * Products::step));
+      }
+    }
     for (; i + Products::step <= size; i += Products::step) {
       sums[0] = Products::add(sums[0], Products::one(), Products::query(query + i));
     }
     std::uint32_t totals[sums_together];
     Products::totals(sums, totals);
-    for (; i < size; ++i) totals[0] += static_cast<std::uint32_t>(query[i]);
-    return totals[0] * Products::row_offset;
+    std::uint32_t total = 0;
+    for (const std::uint32_t part : totals) total += part;
+    for (; i < size; ++i) total += static_cast<std::uint32_t>(query[i]);
+    return total * Products::row_offset;
   }
 }
 
@@ -150,7 +158,7 @@ void add_rows(const DotTile& tile, std::size_t count) noexcept {
 /// near while all rows pass by.
 template <class Products, std::size_t queries>
 void add_queries(const DotTile& tile, std::size_t count, std::size_t rows) noexcept {
-  constexpr std::size_t rows_abreast = queries == 1 ? Products::column_rows : 2;
+  constexpr std::size_t rows_abreast = queries == 1 ? Products::column_rows : Products::block_rows;
   const std::size_t parts = (tile.length * queries + near_bytes - 1) / near_bytes;
   const std::size_t lines = tile.length / stored_line;
   std::size_t query = 0;
@@ -181,7 +189,8 @@ void dot_block(const std::int8_t* queries, std::size_t queries_count, const std:
   }
   if (stride == 0) return;
   const DotTile all{queries, rows, stride, stride, dots, out_stride};
-  const std::size_t some = middle_bytes < stride ? 1 : middle_bytes / stride;
+  const std::size_t fit = middle_bytes / stride / Products::block_rows * Products::block_rows;
+  const std::size_t some = fit == 0 ? Products::block_rows : fit;
   for (std::size_t row = 0; row < count; row += some) {
     add_queries<Products, Products::block_queries>(all.template skip<Products>(0, row),
                                                    queries_count,

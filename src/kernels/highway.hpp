@@ -47,6 +47,7 @@ struct HighwayProducts {
   static constexpr std::size_t step = hn::MaxLanes(Middle());
   static constexpr std::uint32_t row_offset = 0;
   static constexpr std::size_t block_queries = 4;
+  static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 4;
 
   static Sum zero() noexcept { return {hn::Zero(Wide()), hn::Zero(Wide())}; }
@@ -114,26 +115,20 @@ struct HighwayLanes {
   using Sum = hn::Vec<Tag>;
   static constexpr std::size_t count = hn::MaxLanes(Tag());
 
-  static Sum zero() noexcept { return hn::Zero(Tag()); }
+  static Sum load(const std::uint32_t* from) noexcept { return hn::LoadU(Tag(), from); }
+  static void store(Sum sum, std::uint32_t* to) noexcept { hn::StoreU(sum, Tag(), to); }
+  static Sum number(std::uint32_t line) noexcept { return hn::Set(Tag(), line); }
+  static Sum add(Sum a, Sum b) noexcept { return hn::Add(a, b); }
+  static Sum take_off(Sum a, Sum b) noexcept { return hn::Sub(a, b); }
 
-  static Sum add_difference(Sum sum, const std::uint32_t* end,
-                            const std::uint32_t* begin) noexcept {
-    return hn::Add(sum, hn::Sub(hn::LoadU(Tag(), end), hn::LoadU(Tag(), begin)));
-  }
-
-  static void add_values(const std::uint32_t* before, const std::uint16_t* values,
-                         std::uint32_t* after) noexcept {
+  static Sum widen(const std::uint16_t* values) noexcept {
     const hn::Rebind<std::uint16_t, Tag> narrow;
-    const auto wide = hn::PromoteTo(Tag(), hn::LoadU(narrow, values));
-    hn::StoreU(hn::Add(hn::LoadU(Tag(), before), wide), Tag(), after);
+    return hn::PromoteTo(Tag(), hn::LoadU(narrow, values));
   }
 
-  static void keep_lower(Sum sum, std::uint32_t line, std::uint32_t* best,
-                         std::uint32_t* lines) noexcept {
-    const auto before = hn::LoadU(Tag(), best);
-    const auto lower = hn::Lt(sum, before);
-    hn::StoreU(hn::IfThenElse(lower, sum, before), Tag(), best);
-    hn::StoreU(hn::IfThenElse(lower, hn::Set(Tag(), line), hn::LoadU(Tag(), lines)), Tag(), lines);
+  static void keep_lower(Sum sum, Sum line, Sum& best, Sum& best_line) noexcept {
+    best_line = hn::IfThenElse(hn::Lt(sum, best), line, best_line);
+    best = hn::Min(sum, best);
   }
 };
 

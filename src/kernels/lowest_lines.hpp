@@ -3,9 +3,11 @@
 #include "kernels/blocks.hpp"
 
 // Lanes: struct {
-//   count: columns that are looked at at once; Sum: a register; Sum zero()
-//   Sum add_difference(Sum, end, begin); add_values(before, values, after)
-//   keep_lower(Sum, line, best, lines) }
+//   count: columns that are looked at at once; Sum: a register; Sum load(from); store(Sum, to)
+//   Sum number(line): in every lane
+//   Sum add(Sum, Sum); Sum take_off(Sum, Sum)
+//   keep_lower(Sum, line, Sum& best, Sum& best_lines)
+//   Sum widen(values) }
 namespace seqloop::kernels {
 
 /// One column at a time: what is left where columns are fewer than lanes.
@@ -13,87 +15,143 @@ template <class Owner>
 struct OneLane {
   static constexpr std::size_t count = 1;
   using Sum = std::uint32_t;
-  static Sum zero() noexcept { return 0; }
+  static Sum load(const std::uint32_t* from) noexcept { return *from; }
+  static void store(Sum sum, std::uint32_t* to) noexcept { *to = sum; }
+  static Sum number(std::uint32_t line) noexcept { return line; }
+  static Sum widen(const std::uint16_t* values) noexcept { return *values; }
+  static Sum add(Sum a, Sum b) noexcept { return a + b; }
+  static Sum take_off(Sum a, Sum b) noexcept { return a - b; }
 
-  static Sum add_difference(Sum sum, const std::uint32_t* end,
-                            const std::uint32_t* begin) noexcept {
-    return sum + (*end - *begin);
-  }
-
-  static void add_values(const std::uint32_t* before, const std::uint16_t* values,
-                         std::uint32_t* after) noexcept {
-    *after = *before + *values;
-  }
-
-  static void keep_lower(Sum sum, std::uint32_t line, std::uint32_t* best,
-                         std::uint32_t* lines) noexcept {
-    if (sum >= *best) return;
-    *best = sum;
-    *lines = line;
+  static void keep_lower(Sum sum, Sum line, Sum& best, Sum& best_line) noexcept {
+    if (sum >= best) return;
+    best = sum;
+    best_line = line;
   }
 };
 
-template <class Lanes>
-void add_column(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                std::uint32_t* after) noexcept {
-  std::size_t i = 0;
-  for (; i + Lanes::count <= count; i += Lanes::count) {
-    Lanes::add_values(before + i, values + i, after + i);
+/// What diagonals are summed up from and to.
+struct Diagonals {
+  const std::uint16_t* const* values;
+  std::size_t window;
+  std::size_t stride;
+  std::uint32_t* sums;
+};
+
+/// @param first the first of `abreast` * lanes diagonals
+template <class Lanes, std::size_t abreast>
+void sum_abreast(const Diagonals& all, std::size_t first) noexcept {
+  typename Lanes::Sum sums[abreast];
+  typename Lanes::Sum apart[abreast];
+  for (std::size_t v = 0; v < abreast; ++v) {
+    sums[v] = Lanes::number(0);
+    apart[v] = sums[v];
   }
-  for (; i < count; ++i) OneLane<Lanes>::add_values(before + i, values + i, after + i);
+  for (std::size_t i = 0; i < all.window; ++i) {
+    for (std::size_t v = 0; v < abreast; ++v) {
+      const std::size_t at = first + v * Lanes::count;
+      // Where whole sums will be: nothing is apart before the first column.
+      Lanes::store(apart[v], all.sums + i * all.stride + at);
+      const auto here = Lanes::widen(all.values[i] + at);
+      const auto next = Lanes::widen(all.values[i] + at + 1);
+      sums[v] = Lanes::add(sums[v], here);
+      apart[v] = Lanes::add(apart[v], Lanes::take_off(here, next));
+    }
+  }
+  for (std::size_t v = 0; v < abreast; ++v) {
+    Lanes::store(sums[v], all.sums + first + v * Lanes::count);
+  }
 }
 
-/// What one line is made from, and what is known of the best.
-struct Line {
-  const std::uint32_t* prefix;
-  const LineSegment* segments;
-  std::size_t segment_count;
-  std::uint32_t line;
+template <class Lanes>
+void sum_diagonals(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                   std::size_t stride, std::uint32_t* sums) noexcept {
+  constexpr std::size_t abreast = 2;
+  const Diagonals all{values, window, stride, sums};
+  std::size_t first = 0;
+  for (; first + abreast * Lanes::count <= count; first += abreast * Lanes::count) {
+    sum_abreast<Lanes, abreast>(all, first);
+  }
+  for (; first + Lanes::count <= count; first += Lanes::count) sum_abreast<Lanes, 1>(all, first);
+  for (; first < count; ++first) sum_abreast<OneLane<Lanes>, 1>(all, first);
+}
+
+/// What lines are made from, and what is known of the best.
+struct Lines {
+  const std::uint32_t* sums;
+  const std::uint32_t* changes;
+  const LineThroughSums* lines;
+  std::size_t line_count;
+  std::uint32_t number;
   std::uint32_t* best;
-  std::uint32_t* lines;
+  std::uint32_t* best_lines;
 };
 
-/// @param first the first of `abreast` * lanes columns
-template <class Lanes, std::size_t abreast>
-void lowest_abreast(const Line& line, std::size_t first) noexcept {
-  typename Lanes::Sum sums[abreast];
-  for (auto& sum : sums) sum = Lanes::zero();
-  for (std::size_t s = 0; s < line.segment_count; ++s) {
-    const std::uint32_t* end = line.prefix + line.segments[s].end + first;
-    const std::uint32_t* begin = line.prefix + line.segments[s].begin + first;
+template <class Lanes, std::size_t abreast, auto change>
+void change_diagonals(const Lines& all, const LineThroughSums& line, const std::uint32_t* sums,
+                      typename Lanes::Sum (&line_sums)[abreast]) noexcept {
+  for (std::size_t c = line.first_change; c < line.last_change; ++c) {
+    const std::uint32_t* const apart = sums + all.changes[c];
     for (std::size_t i = 0; i < abreast; ++i) {
-      sums[i] = Lanes::add_difference(sums[i], end + i * Lanes::count, begin + i * Lanes::count);
+      line_sums[i] = change(line_sums[i], Lanes::load(apart + i * Lanes::count));
+    }
+  }
+}
+
+/// @param column the first of `abreast` * lanes columns
+template <class Lanes, std::size_t abreast>
+void lowest_abreast(const Lines& all, std::size_t column) noexcept {
+  typename Lanes::Sum best[abreast];
+  typename Lanes::Sum best_lines[abreast];
+  for (std::size_t i = 0; i < abreast; ++i) {
+    best[i] = Lanes::load(all.best + column + i * Lanes::count);
+    best_lines[i] = Lanes::load(all.best_lines + column + i * Lanes::count);
+  }
+  for (std::size_t l = 0; l < all.line_count; ++l) {
+    const LineThroughSums line = all.lines[l];
+    const std::uint32_t* const sums = all.sums + column;
+    typename Lanes::Sum line_sums[abreast];
+    for (std::size_t i = 0; i < abreast; ++i) {
+      line_sums[i] = Lanes::load(sums + line.end + i * Lanes::count);
+    }
+    if (line.rises) {
+      change_diagonals<Lanes, abreast, Lanes::add>(all, line, sums, line_sums);
+    } else {
+      change_diagonals<Lanes, abreast, Lanes::take_off>(all, line, sums, line_sums);
+    }
+    const auto number = Lanes::number(all.number + static_cast<std::uint32_t>(l));
+    for (std::size_t i = 0; i < abreast; ++i) {
+      Lanes::keep_lower(line_sums[i], number, best[i], best_lines[i]);
     }
   }
   for (std::size_t i = 0; i < abreast; ++i) {
-    const std::size_t column = first + i * Lanes::count;
-    Lanes::keep_lower(sums[i], line.line, line.best + column, line.lines + column);
+    Lanes::store(best[i], all.best + column + i * Lanes::count);
+    Lanes::store(best_lines[i], all.best_lines + column + i * Lanes::count);
   }
 }
 
 /// All columns. The last ones may overlap those before, for which nothing changes any more.
 /// @param count at least `abreast` * lanes
 template <class Lanes, std::size_t abreast>
-void lowest_of(const Line& line, std::size_t count) noexcept {
+void lowest_of(const Lines& all, std::size_t count) noexcept {
   constexpr std::size_t width = abreast * Lanes::count;
   for (std::size_t first = 0; first + width < count; first += width) {
-    lowest_abreast<Lanes, abreast>(line, first);
+    lowest_abreast<Lanes, abreast>(all, first);
   }
-  lowest_abreast<Lanes, abreast>(line, count - width);
+  lowest_abreast<Lanes, abreast>(all, count - width);
 }
 
 template <class Lanes>
-void lowest_lines(const std::uint32_t* prefix, const LineSegment* segments,
-                  std::size_t segment_count, std::size_t count, std::uint32_t number,
-                  std::uint32_t* best, std::uint32_t* lines) noexcept {
+void lowest_lines(const std::uint32_t* sums, const std::uint32_t* changes,
+                  const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                  std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept {
   constexpr std::size_t abreast = 4;
-  const Line line{prefix, segments, segment_count, number, best, lines};
+  const Lines all{sums, changes, lines, line_count, number, best, best_lines};
   if (count >= abreast * Lanes::count) {
-    lowest_of<Lanes, abreast>(line, count);
+    lowest_of<Lanes, abreast>(all, count);
   } else if (count >= Lanes::count) {
-    lowest_of<Lanes, 1>(line, count);
+    lowest_of<Lanes, 1>(all, count);
   } else if (count > 0) {
-    lowest_of<OneLane<Lanes>, 1>(line, count);
+    lowest_of<OneLane<Lanes>, 1>(all, count);
   }
 }
 

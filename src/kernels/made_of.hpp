@@ -16,7 +16,7 @@ constexpr IntegerKernels made_of(std::string_view name, bool (*supported)() noex
           &dot_block<Products>,
           &hamming<Differences>,
           &hamming_column<Differences>,
-          &add_column<Lanes>,
+          &sum_diagonals<Lanes>,
           &lowest_lines<Lanes>};
 }
 

@@ -13,6 +13,7 @@ struct Products {
   static constexpr std::size_t step = 16;
   static constexpr std::uint32_t row_offset = 0;
   static constexpr std::size_t block_queries = 8;
+  static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 8;
 
   static Sum zero() noexcept { return vdupq_n_s32(0); }
@@ -31,7 +32,7 @@ struct Products {
 
 constinit const IntegerKernels neon_dot{
     "neon-dot",           &has_neon_dot, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &add_column_neon,
+    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &sum_diagonals_neon,
     &lowest_lines_neon};
 
 }  // namespace seqloop::kernels

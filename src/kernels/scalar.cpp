@@ -13,6 +13,7 @@ struct Products {
   static constexpr std::size_t step = 64;
   static constexpr std::uint32_t row_offset = 0;
   static constexpr std::size_t block_queries = 1;
+  static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 4;
 
   static Sum zero() noexcept { return 0; }

@@ -25,29 +25,30 @@ std::uint32_t hamming_avx512(const std::uint64_t* a, const std::uint64_t* b,
                              std::size_t words) noexcept;
 void hamming_column_avx512(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                            std::size_t count, std::uint32_t* bits) noexcept;
-void add_column_avx512(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                       std::uint32_t* after) noexcept;
-void lowest_lines_avx512(const std::uint32_t* prefix, const LineSegment* segments,
-                         std::size_t segment_count, std::size_t count, std::uint32_t line,
-                         std::uint32_t* best, std::uint32_t* lines) noexcept;
+void sum_diagonals_avx512(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                          std::size_t stride, std::uint32_t* sums) noexcept;
+void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes,
+                         const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                         std::size_t count, std::uint32_t* best,
+                         std::uint32_t* best_lines) noexcept;
 std::uint32_t hamming_avx2(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
 void hamming_column_avx2(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
-void add_column_avx2(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                     std::uint32_t* after) noexcept;
-void lowest_lines_avx2(const std::uint32_t* prefix, const LineSegment* segments,
-                       std::size_t segment_count, std::size_t count, std::uint32_t line,
-                       std::uint32_t* best, std::uint32_t* lines) noexcept;
+void sum_diagonals_avx2(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                        std::size_t stride, std::uint32_t* sums) noexcept;
+void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
+                       const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                       std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
 std::uint32_t hamming_neon(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
 void hamming_column_neon(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
                          std::size_t count, std::uint32_t* bits) noexcept;
-void add_column_neon(const std::uint32_t* before, const std::uint16_t* values, std::size_t count,
-                     std::uint32_t* after) noexcept;
-void lowest_lines_neon(const std::uint32_t* prefix, const LineSegment* segments,
-                       std::size_t segment_count, std::size_t count, std::uint32_t line,
-                       std::uint32_t* best, std::uint32_t* lines) noexcept;
+void sum_diagonals_neon(const std::uint16_t* const* values, std::size_t window, std::size_t count,
+                        std::size_t stride, std::uint32_t* sums) noexcept;
+void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
+                       const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
+                       std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
 
 // What the processor can do. Defined in files that are compiled for every processor of the family.
 [[nodiscard]] bool has_avx512_popcnt() noexcept;

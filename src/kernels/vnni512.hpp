@@ -46,6 +46,7 @@ struct Vnni512Products {
   static constexpr std::size_t step = 64;
   static constexpr std::uint32_t row_offset = 128;
   static constexpr std::size_t block_queries = 8;
+  static constexpr std::size_t block_rows = 3;
   static constexpr std::size_t column_rows = 8;
 
   static Sum zero() noexcept { return {__v16si(_mm512_setzero_si512())}; }

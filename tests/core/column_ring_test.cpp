@@ -27,7 +27,7 @@ TYPED_TEST(ColumnRingOf, EqualsATableWhateverIsAsked) {
         SCOPED_TRACE("columns " + std::to_string(columns) + ", rows " + std::to_string(rows) +
                      ", seed " + std::to_string(seed));
         TestArena memory;
-        ColumnRing<Value> ring(memory.arena, "values", "marks", columns, rows);
+        ColumnRing<Value> ring(memory.arena, "values", "marks", columns, rows, 3);
         Table<Value> table;
         std::mt19937 random(seed);
         Value next = 0;

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -255,21 +256,33 @@ TEST_P(Variant, HammingColumnEqualsTheDefinitionForEveryShapeAndReadsNothingElse
   }
 }
 
-TEST_P(Variant, GoOnWithSumsOverEverySizeAndAlignment) {
+TEST_P(Variant, SumDiagonalsEqualsTheDefinitionForEveryShapeAndReadsNothingElse) {
   std::mt19937 random(17);
-  for (const std::size_t count : {0U, 1U, 3U, 4U, 7U, 8U, 15U, 16U, 17U, 31U, 33U, 148U}) {
-    for (std::size_t shift = 0; shift < 3; ++shift) {
-      std::vector<std::uint32_t> before(count + shift);
-      std::vector<std::uint16_t> values(count + shift);
-      std::vector<std::uint32_t> after(count + shift + 1, 77U);
-      for (auto& value : before) value = static_cast<std::uint32_t>(random());
-      for (auto& value : values) value = static_cast<std::uint16_t>(random());
-      kernels_.add_column(before.data() + shift, values.data() + shift, count,
-                          after.data() + shift);
-      for (std::size_t i = shift; i < count + shift; ++i) {
-        ASSERT_EQ(after[i], before[i] + values[i]) << count << ' ' << shift << ' ' << i;
+  for (const std::size_t window : {1U, 2U, 21U}) {
+    for (const std::size_t count : {0U, 1U, 3U, 4U, 7U, 8U, 15U, 16U, 17U, 31U, 33U, 148U}) {
+      const std::size_t stride = count + window % 3;
+      std::vector<std::unique_ptr<Guarded<std::uint16_t>>> columns;
+      std::vector<const std::uint16_t*> values;
+      for (std::size_t i = 0; i < window; ++i) {
+        std::vector<std::uint16_t> column(count + 1);
+        for (auto& value : column) value = static_cast<std::uint16_t>(random());
+        values.push_back(
+            columns.emplace_back(std::make_unique<Guarded<std::uint16_t>>(column))->data());
       }
-      EXPECT_EQ(after[count + shift], 77U) << "nothing behind the last is written";
+      std::vector<std::uint32_t> sums(window * stride + 1, 77U);
+      std::vector<std::uint32_t> right = sums;
+      for (std::size_t j = 0; j < count; ++j) {
+        std::uint32_t apart = 0;
+        std::uint32_t whole = 0;
+        for (std::size_t i = 0; i < window; ++i) {
+          right[i * stride + j] = apart;
+          apart += static_cast<std::uint32_t>(values[i][j] - values[i][j + 1]);
+          whole += values[i][j];
+        }
+        right[j] = whole;
+      }
+      kernels_.sum_diagonals(values.data(), window, count, stride, sums.data());
+      EXPECT_EQ(sums, right) << window << ' ' << count;
     }
   }
 }
@@ -281,57 +294,73 @@ struct Lowest {
   bool operator==(const Lowest&) const = default;
 };
 
-void keep_lower(const std::vector<std::uint32_t>& prefix, const std::vector<LineSegment>& segments,
-                std::size_t count, std::uint32_t line, Lowest& lowest) {
-  for (std::size_t column = 0; column < count; ++column) {
-    std::uint32_t sum = 0;
-    for (const LineSegment segment : segments) {
-      sum += prefix[segment.end + column] - prefix[segment.begin + column];
+/// Lines of every count of changes, up and down, as far as the sums reach.
+struct MadeLines {
+  static constexpr std::uint32_t furthest = 40;
+  std::vector<LineThroughSums> lines;
+  std::vector<std::uint32_t> changes;
+
+  explicit MadeLines(std::mt19937& random) {
+    std::uniform_int_distribution<std::uint32_t> offsets(0, furthest);
+    for (const std::uint32_t count : {0U, 1U, 2U, 21U, 0U, 5U}) {
+      const auto first = static_cast<std::uint32_t>(changes.size());
+      for (std::uint32_t c = 0; c < count; ++c) changes.push_back(offsets(random));
+      lines.push_back({offsets(random), first, first + count, lines.size() % 2 == 0});
     }
-    if (sum >= lowest.best[column]) continue;
-    lowest.best[column] = sum;
-    lowest.lines[column] = line;
+    lines[1].end = furthest;
+    changes.back() = furthest;
+  }
+};
+
+void keep_lower(const std::vector<std::uint32_t>& sums, const MadeLines& made, std::uint32_t number,
+                Lowest& lowest) {
+  for (const LineThroughSums& line : made.lines) {
+    for (std::size_t column = 0; column + 1 < lowest.best.size(); ++column) {
+      std::uint32_t sum = sums[line.end + column];
+      for (std::uint32_t c = line.first_change; c < line.last_change; ++c) {
+        const std::uint32_t apart = sums[made.changes[c] + column];
+        sum = line.rises ? sum + apart : sum - apart;
+      }
+      if (sum >= lowest.best[column]) continue;
+      lowest.best[column] = sum;
+      lowest.lines[column] = number;
+    }
+    ++number;
   }
 }
 
 TEST_P(Variant, LowestLinesEqualTheDefinitionForEveryCountAndReadNothingElse) {
   std::mt19937 random(9);
-  std::uniform_int_distribution<std::uint32_t> offsets(0, 40);
-  for (const std::size_t segment_count : {0U, 1U, 2U, 21U}) {
-    for (std::size_t count = 0; count < 150; ++count) {
-      // Sums that wrap around, and ties.
-      std::uniform_int_distribution<std::uint32_t> values(0, count % 2 == 0 ? 3U : 0xFFFFFFFFU);
-      std::vector<std::uint32_t> prefix(count + 40);
-      for (std::uint32_t& value : prefix) value = 0xFFFFFFFEU + values(random);
-      Lowest right{std::vector<std::uint32_t>(count + 1, 0xFFFFFFFFU),
-                   std::vector<std::uint32_t>(count + 1, 99)};
-      Lowest kept = right;
-      const Guarded guarded(prefix);
-      for (std::uint32_t line = 0; line < 3; ++line) {
-        std::vector<LineSegment> segments(segment_count);
-        for (LineSegment& segment : segments) segment = {offsets(random), offsets(random)};
-        if (segment_count > 0) segments.front().end = 40;
-        if (segment_count > 1) segments.back().begin = 40;
-        keep_lower(prefix, segments, count, line, right);
-        kernels_.lowest_lines(guarded.data(), segments.data(), segment_count, count, line,
-                              kept.best.data(), kept.lines.data());
-        ASSERT_EQ(kept, right) << segment_count << ' ' << count << ' ' << line;
-      }
-      EXPECT_EQ(kept.lines.back(), 99U) << "nothing is written behind";
+  for (std::size_t count = 0; count < 150; ++count) {
+    // Sums that wrap around, and ties.
+    std::uniform_int_distribution<std::uint32_t> values(0, count % 2 == 0 ? 3U : 0xFFFFFFFFU);
+    std::vector<std::uint32_t> sums(count + MadeLines::furthest);
+    for (std::uint32_t& sum : sums) sum = 0xFFFFFFFEU + values(random);
+    Lowest right{std::vector<std::uint32_t>(count + 1, 0xFFFFFFFFU),
+                 std::vector<std::uint32_t>(count + 1, 99)};
+    Lowest kept = right;
+    const Guarded guarded(sums);
+    for (std::uint32_t go = 0; go < 3; ++go) {
+      const MadeLines made(random);
+      keep_lower(sums, made, 10 * go, right);
+      kernels_.lowest_lines(guarded.data(), made.changes.data(), made.lines.data(),
+                            made.lines.size(), 10 * go, count, kept.best.data(), kept.lines.data());
+      ASSERT_EQ(kept, right) << count << ' ' << go;
     }
+    EXPECT_EQ(kept.lines.back(), 99U) << "nothing is written behind";
   }
 }
 
 TEST_P(Variant, LowestLinesCompareWithoutASign) {
   for (const std::size_t count : {1U, 9U, 200U}) {
-    const std::vector<std::uint32_t> prefix(count + 1, 0);
+    const std::vector<std::uint32_t> sums(count, 0);
     std::vector<std::uint32_t> high(count, 0x80000001U);
     std::vector<std::uint32_t> lines(count, 5);
-    const LineSegment nothing{1, 0};
-    kernels_.lowest_lines(prefix.data(), &nothing, 1, count, 6, high.data(), lines.data());
+    const LineThroughSums nothing{0, 0, 0, true};
+    kernels_.lowest_lines(sums.data(), nullptr, &nothing, 1, 6, count, high.data(), lines.data());
     EXPECT_EQ(high, std::vector<std::uint32_t>(count, 0)) << count;
     EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << count;
-    kernels_.lowest_lines(prefix.data(), &nothing, 1, count, 7, high.data(), lines.data());
+    kernels_.lowest_lines(sums.data(), nullptr, &nothing, 1, 7, count, high.data(), lines.data());
     EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << "of equal sums the first stays";
   }
 }

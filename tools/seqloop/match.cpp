@@ -25,7 +25,7 @@ namespace seqloop::program {
 namespace {
 
 // A recording is there whole, so that places can be read once for many frames.
-constexpr std::size_t frames_at_once = 32;
+constexpr std::size_t frames_at_once = 64;
 
 struct MatchSettings {
   std::filesystem::path reference;
