@@ -7,7 +7,7 @@
 
 namespace seqloop {
 
-ArenaMemory::ArenaMemory(std::size_t bytes, std::span<std::byte> memory) : span_(memory) {
+ArenaMemory::ArenaMemory(std::uint64_t bytes, std::span<std::byte> memory) : span_(memory) {
   if (!memory.empty()) {
     if (memory.size() < bytes) {
       throw SetupError(
@@ -20,13 +20,16 @@ ArenaMemory::ArenaMemory(std::size_t bytes, std::span<std::byte> memory) : span_
     }
     return;
   }
-  void* taken = ::operator new (bytes, std::align_val_t{Arena::alignment}, std::nothrow);
+  const auto all = static_cast<std::size_t>(bytes);
+  void* taken = all == bytes
+                    ? ::operator new (all, std::align_val_t{Arena::alignment}, std::nothrow)
+                    : nullptr;
   if (taken == nullptr) {
     throw SetupError({"memory", std::to_string(bytes) + " bytes are not to be had",
                       "lower the capacity; `plan` shows what each buffer takes"});
   }
   own_.reset(static_cast<std::byte*>(taken));
-  span_ = {own_.get(), bytes};
+  span_ = {own_.get(), all};
 }
 
 }  // namespace seqloop

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "keep_lowest.hpp"
+#include "seqloop/keep_lowest.hpp"
 
 namespace seqloop {
 namespace {

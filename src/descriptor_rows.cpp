@@ -57,10 +57,11 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
       kernels_(&best_integer_kernels()),
       stride_(stride_of(form)),
       words_(words_of(form)),
-      exact_(arena.take<float>(names.values,
-                               form.arithmetic == Arithmetic::float32 ? rows * stride_ : 0)),
-      small_(arena.take<std::int8_t>(names.values,
-                                     form.arithmetic == Arithmetic::int8 ? rows * stride_ : 0)),
+      exact_(arena.take<float>(names.values, form.arithmetic == Arithmetic::float32
+                                                 ? std::uint64_t{rows} * stride_
+                                                 : 0)),
+      small_(arena.take<std::int8_t>(
+          names.values, form.arithmetic == Arithmetic::int8 ? std::uint64_t{rows} * stride_ : 0)),
       inverse_lengths_(
           arena.take<double>(names.lengths, form.arithmetic == Arithmetic::int8 ? rows : 0)),
       quantised_(arena.take<std::int8_t>(
@@ -68,9 +69,9 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
           words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
       sketched_values_(
           arena.take<SketchedValue>("what a sketch is made of", sketched_values(words_))),
-      sketches_(arena.take<std::uint64_t>(names.sketches, rows * words_)),
-      scanned_(
-          arena.take<std::uint64_t>(names.sketches, form.relocalising ? rows * scanned_words : 0)) {
+      sketches_(arena.take<std::uint64_t>(names.sketches, std::uint64_t{rows} * words_)),
+      scanned_(arena.take<std::uint64_t>(
+          names.sketches, form.relocalising ? std::uint64_t{rows} * scanned_words : 0)) {
   choose_sketched_values(form.size, sketched_values_);
 }
 

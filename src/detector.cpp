@@ -78,7 +78,7 @@ std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capaci
 
 Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) {
   const std::size_t window = config.sequence_length + 1;
-  const std::size_t lines =
+  const std::uint64_t lines =
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();
   const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
   if (relocalises(config)) {
@@ -90,7 +90,7 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   // column that repeats another (`skip`) has as many rows more to look at as it is younger, and
   // columns that reach the newest places grow with them. Elsewhere a full search finds the whole
   // window empty.
-  std::size_t distances = capacity.places;
+  std::uint64_t distances = capacity.places;
   if (config.candidates != Candidates::all) {
     distances *= window;
   } else if (config.use == Use::close_loops) {

@@ -1,7 +1,7 @@
 #include "seqloop/difference.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "seqloop/lane_sums.hpp"
@@ -9,10 +9,7 @@
 namespace seqloop {
 namespace {
 
-using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
-using LanesView = Eigen::Map<const Lanes>;
-
-/// Sums `term(a, b)` over all values, in a fixed order.
+/// Sums `term(a - b)` over all values, in a fixed order.
 template <class Term>
 double sum_of(std::span<const float> a, std::span<const float> b, Term term) noexcept {
   // Partial sums move to double before float has lost digits on long descriptors.
@@ -20,9 +17,11 @@ double sum_of(std::span<const float> a, std::span<const float> b, Term term) noe
   double sum = 0.0;
   for (std::size_t first = 0; first < a.size(); first += block) {
     const std::size_t last = std::min(first + block, a.size());
-    Lanes partial = Lanes::Zero();
+    std::array<float, lanes> partial{};
     for (std::size_t i = first; i < last; i += lanes) {
-      partial += term(LanesView(a.data() + i) - LanesView(b.data() + i));
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        partial[lane] += term(a[i + lane] - b[i + lane]);
+      }
     }
     for (const float lane : partial) sum += static_cast<double>(lane);
   }
@@ -32,12 +31,12 @@ double sum_of(std::span<const float> a, std::span<const float> b, Term term) noe
 }  // namespace
 
 float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
-  const auto square = [](const auto& values) { return values.square(); };
+  const auto square = [](float value) { return value * value; };
   return static_cast<float>(std::sqrt(sum_of(a, b, square)));
 }
 
 float mean_absolute(std::span<const float> a, std::span<const float> b, std::size_t size) noexcept {
-  const auto absolute = [](const auto& values) { return values.abs(); };
+  const auto absolute = [](float value) { return std::abs(value); };
   return static_cast<float>(sum_of(a, b, absolute) / static_cast<double>(size));
 }
 

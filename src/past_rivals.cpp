@@ -27,7 +27,8 @@ std::optional<double> PastRivals::lowest(std::size_t best, std::size_t half_wind
   const std::size_t other_slices = (std::max<std::size_t>(rows, 1) - 1) / slice_;
   const std::size_t frames = std::min(rounds * other_slices, seen_.size() / rows_a_frame);
   std::optional<double> lowest;
-  for (const Seen& seen : seen_.first(std::min<std::uint64_t>(remembered_, seen_.size()))) {
+  const auto held = static_cast<std::size_t>(std::min<std::uint64_t>(remembered_, seen_.size()));
+  for (const Seen& seen : seen_.first(held)) {
     const std::uint64_t age = now_ - seen.frame;
     if (age > frames) continue;
     // It may have moved a row a frame, or none, or two.
@@ -41,7 +42,7 @@ std::optional<double> PastRivals::lowest(std::size_t best, std::size_t half_wind
 
 void PastRivals::remember(Rival rival) noexcept {
   if (seen_.empty()) return;
-  seen_[remembered_ % seen_.size()] = {now_, rival};
+  seen_[static_cast<std::size_t>(remembered_ % seen_.size())] = {now_, rival};
   ++remembered_;
 }
 

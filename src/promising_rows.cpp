@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "keep_lowest.hpp"
+#include "seqloop/keep_lowest.hpp"
 
 namespace seqloop {
 namespace {

@@ -64,7 +64,7 @@ SequenceSearch::SequenceSearch(Arena& arena, const Trajectories& trajectories,
   through_ = arena.take<LineThroughSums>("lines through sums", velocities.count());
   changes_ =
       arena.take<std::uint32_t>("changes of diagonal", static_cast<std::size_t>(shape.changes));
-  const std::size_t sums = (ds + 1) * stride_;
+  const std::uint64_t sums = std::uint64_t{ds + 1} * stride_;
   const bool gathered = config.full_map != FullMap::refuse;
   if (whole) {
     whole_sums_ = arena.take<std::uint32_t>("sums along diagonals", sums);

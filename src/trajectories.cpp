@@ -27,7 +27,8 @@ std::int64_t trajectory_offset(std::int64_t m, std::size_t i, std::size_t ds) no
 Trajectories::Trajectories(Arena& arena, std::size_t ds, double vmin, double vmax)
     : ds_(ds),
       range_(velocity_range(ds, vmin, vmax)),
-      offsets_(arena.take<std::int32_t>("trajectory offsets", range_.count() * (ds + 1))) {
+      offsets_(arena.take<std::int32_t>("trajectory offsets",
+                                        std::uint64_t{range_.count()} * (ds + 1))) {
   if (arena.measuring()) return;
   for (std::size_t line = 0; line < count(); ++line) {
     for (std::size_t i = 0; i < window(); ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <span>
@@ -10,15 +11,16 @@
 
 namespace seqloop {
 
-/// One buffer that a component takes: what it is and how large, padding included.
+/// One buffer that a component takes: what it is and how large, padding included. Counted in 64
+/// bits on 32-bit systems too, where a plan may be of more than they have.
 struct BufferSize {
   std::string_view name;
-  std::size_t bytes;
+  std::uint64_t bytes;
 };
 
 /// The sum of all buffers.
-[[nodiscard]] inline std::size_t total_bytes(const std::vector<BufferSize>& buffers) {
-  std::size_t sum = 0;
+[[nodiscard]] inline std::uint64_t total_bytes(const std::vector<BufferSize>& buffers) {
+  std::uint64_t sum = 0;
   for (const BufferSize& buffer : buffers) sum += buffer.bytes;
   return sum;
 }
@@ -44,18 +46,20 @@ class Arena {
   /// @return [count] zeroed values, or nothing while measuring
   /// Errors: std::bad_alloc when the memory does not suffice.
   template <class T>
-  [[nodiscard]] std::span<T> take(std::string_view name, std::size_t count) {
+  [[nodiscard]] std::span<T> take(std::string_view name, std::uint64_t count) {
     static_assert(std::is_trivially_destructible_v<T>, "an arena destroys nothing");
-    const std::size_t bytes = (count * sizeof(T) + alignment - 1) / alignment * alignment;
+    const std::uint64_t bytes = (count * sizeof(T) + alignment - 1) / alignment * alignment;
     if (measuring()) {
       plan_->push_back({name, bytes});
       return {};
     }
     if (bytes > rest_.size()) throw std::bad_alloc();
-    T* first = reinterpret_cast<T*>(rest_.data());
-    std::uninitialized_value_construct_n(first, count);
-    rest_ = rest_.subspan(bytes);
-    return {first, count};
+    // By way of void: what lies there is aligned, which the compiler cannot know.
+    T* first = static_cast<T*>(static_cast<void*>(rest_.data()));
+    const auto taken = static_cast<std::size_t>(count);
+    std::uninitialized_value_construct_n(first, taken);
+    rest_ = rest_.subspan(static_cast<std::size_t>(bytes));
+    return {first, taken};
   }
 
  private:
@@ -70,7 +74,7 @@ class ArenaMemory {
   /// @param memory the caller's piece; empty: take it from the heap
   /// Errors: SetupError when the caller's piece is too small or not aligned to Arena::alignment,
   /// or when the heap has no such piece.
-  ArenaMemory(std::size_t bytes, std::span<std::byte> memory);
+  ArenaMemory(std::uint64_t bytes, std::span<std::byte> memory);
 
   /// No memory: what a component that is only measured lives in.
   ArenaMemory() = default;

@@ -33,8 +33,9 @@ class ColumnRing {
         rows_(rows),
         blocks_((rows + block_rows - 1) / block_rows),
         values_(between_margins(
-            arena.take<Value>(name, columns > 0 ? columns * rows + 2 * margin : 0), margin)),
-        block_frames_(arena.take<std::uint64_t>(marks, columns * blocks_)),
+            arena.take<Value>(name, columns > 0 ? std::uint64_t{columns} * rows + 2 * margin : 0),
+            margin)),
+        block_frames_(arena.take<std::uint64_t>(marks, std::uint64_t{columns} * blocks_)),
         filled_(arena.take<Filled>(marks, columns)) {}
 
   /// Takes what was computed of the frame before as this frame's too.

@@ -33,8 +33,8 @@ class Detector {
   /// Bytes of every buffer beside the map's.
   [[nodiscard]] static std::vector<BufferSize> plan(const MatcherConfig& config,
                                                     const Capacity& capacity);
-  [[nodiscard]] static std::size_t bytes_needed(const MatcherConfig& config,
-                                                const Capacity& capacity) {
+  [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
+                                                  const Capacity& capacity) {
     return total_bytes(plan(config, capacity));
   }
 

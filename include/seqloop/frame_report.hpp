@@ -38,11 +38,11 @@ struct Match {
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.
 struct Work {
-  std::size_t candidates = 0;  ///< rows that got a score
-  std::size_t distances = 0;   ///< descriptor distances computed
-  std::size_t line_sums = 0;   ///< lines summed, of ds + 1 differences each
-  std::size_t scanned = 0;     ///< to relocalise: places looked at by 32 bytes of their sketches
-  std::size_t sketches = 0;    ///< to relocalise: pairs of sketches compared by 128 bytes
+  std::uint64_t candidates = 0;  ///< rows that got a score
+  std::uint64_t distances = 0;   ///< descriptor distances computed
+  std::uint64_t line_sums = 0;   ///< lines summed, of ds + 1 differences each
+  std::uint64_t scanned = 0;     ///< to relocalise: places looked at by 32 bytes of their sketches
+  std::uint64_t sketches = 0;    ///< to relocalise: pairs of sketches compared by 128 bytes
 
   bool operator==(const Work&) const = default;
 };

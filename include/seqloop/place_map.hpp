@@ -21,8 +21,8 @@ class PlaceMap {
   /// Bytes of every buffer. Errors: SetupError, all faults at once.
   [[nodiscard]] static std::vector<BufferSize> plan(const MatcherConfig& config,
                                                     const Capacity& capacity);
-  [[nodiscard]] static std::size_t bytes_needed(const MatcherConfig& config,
-                                                const Capacity& capacity) {
+  [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
+                                                  const Capacity& capacity) {
     return total_bytes(plan(config, capacity));
   }
 

@@ -190,10 +190,10 @@ TEST(BoundedWork, NoFrameCostsMuchMoreThanAnother) {
       for (std::size_t frame = 1'000; frame < 2'500; ++frame) {
         const Work work = detector.step(query[frame]).work;
         if (frame < 1'000 + 2 * config.sequence_length) continue;
-        counts[0].push_back(work.candidates);
-        counts[1].push_back(work.distances);
-        counts[2].push_back(work.line_sums);
-        counts[3].push_back(work.sketches);
+        const std::array counted{work.candidates, work.distances, work.line_sums, work.sketches};
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+          counts[i].push_back(static_cast<std::size_t>(counted[i]));
+        }
       }
       for (const std::vector<std::size_t>& count : counts) {
         const std::size_t most = *std::ranges::max_element(count);

@@ -1,5 +1,7 @@
 // What a step promises beside the right answer: bounded work, fixed memory, honest gates.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 
@@ -27,7 +29,7 @@ TEST(Detector, NeverComputesMoreThanThePlanSays) {
         const bool closing = use == Use::close_loops;
         const std::size_t places = closing ? drive.size() : 80;
         const Work most = Detector::most_work(config, {places, 12});
-        std::size_t all = 0;
+        std::uint64_t all = 0;
         std::size_t change = 0;
         for (const FrameReport& report :
              reports(closing ? oracle::Vectors{} : oracle::drive(9, 80, 12), drive, config)) {
@@ -282,7 +284,7 @@ TEST(Detector, SameInputSameReports) {
 TEST(Detector, LivesInMemoryThatTheCallerGives) {
   MatcherConfig config = paper(Candidates::all, 5);
   PlaceMap map = map_of(oracle::drive(1, 30, 9), config);
-  const std::size_t bytes = Detector::bytes_needed(config, {30, 9});
+  const auto bytes = static_cast<std::size_t>(Detector::bytes_needed(config, {30, 9}));
   const ArenaMemory memory(bytes, {});
   Detector detector(config, map, memory.span());
   EXPECT_EQ(detector.step(oracle::drive(1, 1, 9)[0]).gate, Gate::warming_up);
@@ -409,8 +411,10 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmax = std::nan(""); }), 1U);
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = 1.01, c.vmax = 1.02; }), 1U);
   const MatcherConfig exact = paper(Candidates::all, 20);
+  constexpr auto most_places = static_cast<std::size_t>(
+      std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
   EXPECT_EQ(validate(Capacity{0, 0}, exact).size(), 2U);
-  EXPECT_EQ(validate(Capacity{std::size_t{1} << 32U, std::size_t{1} << 22U}, exact).size(), 0U);
+  EXPECT_EQ(validate(Capacity{most_places, std::size_t{1} << 22U}, exact).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values}, {}).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values + 1}, {}).size(), 1U);
 }

@@ -63,7 +63,7 @@ TEST_P(FullMaps, ForgettingTheOldestFindsTheNewestPlacesByTheirNumbers) {
     EXPECT_LT(report.match->place + config.exclude, *report.frame);
     EXPECT_EQ(map.order().number(0), frames - std::min(frames, capacity));
     // Just after a lap began, the window still holds the end of the one before.
-    const std::size_t at = *report.frame % lap;
+    const std::uint64_t at = *report.frame % lap;
     if (report.gate != Gate::match || *report.frame < lap || at < 15 || at > 140) continue;
     ++answers;
     right += report.match->place == *report.frame - lap;

@@ -56,7 +56,9 @@ class Guarded {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
     held_ = memory_.hold({bytes, values.size() * sizeof(Value)}).data();
   }
-  [[nodiscard]] const Value* data() const { return reinterpret_cast<const Value*>(held_); }
+  [[nodiscard]] const Value* data() const {
+    return static_cast<const Value*>(static_cast<const void*>(held_));
+  }
 
  private:
   test::GuardedBytes memory_;

@@ -297,7 +297,7 @@ TEST_F(Slices, ComputeADifferenceOnceAndOnlyWhereAsked) {
 TEST_F(Slices, HoldTheRightColumnAfterWrappingTwice) {
   for (std::size_t frame = 0; frame < 7; ++frame) {
     push(frame);
-    for (std::uint64_t kept = frame < 2 ? 0 : frame - 2; kept <= frame; ++kept) {
+    for (std::size_t kept = frame < 2 ? 0 : frame - 2; kept <= frame; ++kept) {
       const bool fresh = kept == frame;
       EXPECT_EQ(slices_.fill(map_, kept, 0, 6), fresh ? 6U : 0U) << frame << ' ' << kept;
       const std::vector<float> shown = column(slices_, kept);

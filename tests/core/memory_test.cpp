@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/matcher.hpp"
+#include "expect_setup_error.hpp"
 
 namespace seqloop {
 namespace {
@@ -51,6 +52,21 @@ TEST(Memory, ThePlanIsWhatTheProcessGrowsBy) {
       EXPECT_NEAR(stepped, planned, 0.05 * planned);
       EXPECT_NEAR(stepped, built, slack) << "every page is there before the first step";
     }
+  }
+}
+
+TEST(Memory, MoreThanA32BitSystemAddressesIsPlannedToTheByteAndRefused) {
+  const MatcherConfig config;
+  const Capacity capacity{100'000'000, 65'536};
+  const std::uint64_t planned = PlaceMap::bytes_needed(config, capacity);
+  EXPECT_GT(planned, std::uint64_t{capacity.places} * capacity.descriptor_size);
+  EXPECT_LT(planned, std::uint64_t{capacity.places} * capacity.descriptor_size / 100 * 102);
+  const ArenaMemory given(64, {});
+  const std::string message = test::setup_error([&] { PlaceMap(config, capacity, given.span()); });
+  EXPECT_TRUE(test::says(message, std::to_string(planned) + " needed"));
+  if constexpr (sizeof(std::size_t) == 4) {
+    const std::string alone = test::setup_error([&] { PlaceMap(config, capacity); });
+    EXPECT_TRUE(test::says(alone, std::to_string(planned) + " bytes are not to be had"));
   }
 }
 

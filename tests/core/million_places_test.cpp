@@ -111,7 +111,7 @@ TEST(MillionPlaces, TakeWhatThePlanSaysAndNoStepMoreThanInASmallMap) {
     EXPECT_LE(report.work.line_sums, most.line_sums) << frame;
     EXPECT_LE(report.work.sketches, most.sketches) << frame;
     if (report.gate != Gate::match) continue;
-    const std::size_t centre = *report.frame;
+    const auto centre = static_cast<std::size_t>(*report.frame);
     const std::size_t right = stretches[centre / frames] + centre % frames;
     found[centre / frames] += report.match->place == right;
   }

@@ -1,8 +1,10 @@
 #!/bin/sh
 # Builds and runs the program that README.md shows, against an installed copy, as a user would.
-# Usage: outside_program.sh SOURCE BUILD CXX CXX_FLAGS DRIVE_MAKER
+# Usage: outside_program.sh SOURCE BUILD DRIVE_MAKER EMULATOR CMAKE_ARGUMENT...
+# EMULATOR starts what was built, and is empty where nothing is needed for that.
 set -eu
-source=$1 build=$2 cxx=$3 flags=$4 maker=$5
+source=$1 build=$2 maker=$3 emulator=$4
+shift 4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/installed" >/dev/null
@@ -14,9 +16,8 @@ block cmake >"$work/user/CMakeLists.txt"
 block cpp >"$work/user/main.cpp"
 [ -s "$work/user/main.cpp" ] && [ -s "$work/user/CMakeLists.txt" ]
 
-cmake -G Ninja -S "$work/user" -B "$work/user/build" -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$work/installed" \
-  >"$work/log" || { cat "$work/log"; exit 1; }
+cmake -G Ninja -S "$work/user" -B "$work/user/build" -DCMAKE_BUILD_TYPE=Release "$@" \
+  -DCMAKE_PREFIX_PATH="$work/installed" >"$work/log" || { cat "$work/log"; exit 1; }
 cmake --build "$work/user/build" >"$work/log" || { cat "$work/log"; exit 1; }
 
 # Who brings descriptors of their own needs the core alone, and no OpenCV.
@@ -32,14 +33,13 @@ int main() {
   return detector.step(std::vector<float>{1.0F, 0.0F}).gate == seqloop::Gate::warming_up ? 0 : 1;
 }
 EOF
-cmake -G Ninja -S "$work/core" -B "$work/core/build" -DCMAKE_CXX_COMPILER="$cxx" \
-  -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$work/installed" \
+cmake -G Ninja -S "$work/core" -B "$work/core/build" "$@" -DCMAKE_PREFIX_PATH="$work/installed" \
   -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON >"$work/log" || { cat "$work/log"; exit 1; }
 cmake --build "$work/core/build" >"$work/log" || { cat "$work/log"; exit 1; }
-"$work/core/build/loops"
+$emulator "$work/core/build/loops"
 
 "$maker" --out "$work/drive" --frames 400 --drives loop --size 160x90 2>/dev/null
-"$work/user/build/loops" "$work/drive/drive" >"$work/loops.txt"
+$emulator "$work/user/build/loops" "$work/drive/drive" >"$work/loops.txt"
 tail -3 "$work/loops.txt"
 [ "$(grep -c 'is place' "$work/loops.txt")" -ge 20 ] || { echo "hardly any loop found"; exit 1; }
-"$work/installed/bin/seqloop" --version
+$emulator "$work/installed/bin/seqloop" --version

@@ -16,7 +16,7 @@ ProcessedFrame processed(std::uint64_t index, std::uint64_t counted) {
 
 TEST(SourceNumbers, AreTheDetectorsOwnWhereNothingIsMissing) {
   SourceNumbers numbers(5, 100);
-  for (std::uint64_t i = 0; i < 50; ++i) {
+  for (std::size_t i = 0; i < 50; ++i) {
     ProcessedFrame frame = processed(i, i);
     if (i >= 10) frame.report.match = Match{.place = i - 10, .head = i - 8};
     numbers.rename(frame);

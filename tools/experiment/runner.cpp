@@ -187,7 +187,7 @@ class Runner {
       const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
       if (!kept) return rows;
       for (std::size_t i = 0; i < kept->frames.size(); ++i) {
-        std::ranges::copy(rows.row(kept->frames[i]),
+        std::ranges::copy(rows.row(static_cast<std::size_t>(kept->frames[i])),
                           rows.values.begin() + static_cast<std::ptrdiff_t>(i * rows.columns));
       }
       rows.rows = kept->frames.size();

@@ -1,5 +1,7 @@
 #include "seqloop/available_memory.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -8,19 +10,21 @@
 
 namespace seqloop::program {
 
-std::size_t available_memory() {
+std::uint64_t available_memory() {
+  // A 32-bit program on a 64-bit kernel reads of more than it can address.
+  constexpr std::uint64_t most = std::numeric_limits<std::size_t>::max();
   std::ifstream info("/proc/meminfo");
   std::string name;
-  std::size_t kibibytes = 0;
+  std::uint64_t kibibytes = 0;
   for (std::string unit; info >> name >> kibibytes; std::getline(info, unit)) {
-    if (name == "MemAvailable:") return kibibytes * 1024;
+    if (name == "MemAvailable:") return std::min(kibibytes * 1024, most);
   }
-  return std::numeric_limits<std::size_t>::max();
+  return most;
 }
 
-bool fits_memory(std::size_t bytes, std::string_view what) {
+bool fits_memory(std::uint64_t bytes, std::string_view what) {
   constexpr double gigabyte = 1e9;
-  const std::size_t available = available_memory();
+  const std::uint64_t available = available_memory();
   if (bytes <= available / 10 * 9) return true;
   say("{}: left out, it takes {:.1f} GB of memory and {:.1f} GB are available", what,
       static_cast<double>(bytes) / gigabyte, static_cast<double>(available) / gigabyte);

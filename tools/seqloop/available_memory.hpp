@@ -1,14 +1,14 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace seqloop::program {
 
-/// Memory that can be taken without pushing anything out; everything where nobody knows.
-[[nodiscard]] std::size_t available_memory();
+/// Bytes that this program can take without pushing anything out; everything where nobody knows.
+[[nodiscard]] std::uint64_t available_memory();
 
 /// Whether so much can be had with a tenth to spare. Says so on stderr where not.
-[[nodiscard]] bool fits_memory(std::size_t bytes, std::string_view what);
+[[nodiscard]] bool fits_memory(std::uint64_t bytes, std::string_view what);
 
 }  // namespace seqloop::program

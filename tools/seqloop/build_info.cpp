@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <opencv2/core/version.hpp>
 #include <thread>
 
 #include "seqloop_commit.hpp"
@@ -11,7 +12,10 @@
 namespace seqloop::program {
 namespace {
 
+/// A board's name, or the processor's: ARM kernels name no processor.
 std::string processor() {
+  std::string board;
+  if (std::getline(std::ifstream("/proc/device-tree/model"), board, '\0')) return board;
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
     if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
@@ -35,7 +39,7 @@ std::string program_state() {
 }
 
 std::string condition_line() {
-  return fmt::format("{}, {} cores; compiler {}; {}", processor(),
+  return fmt::format("{}, {} cores; compiler {}; OpenCV " CV_VERSION "; {}", processor(),
                      std::thread::hardware_concurrency(), __VERSION__, version_line());
 }
 

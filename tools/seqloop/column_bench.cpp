@@ -113,8 +113,10 @@ std::vector<Contender> our_columns(Places& places) {
 void time_columns(const Capacity& size, std::size_t graph_places, const RivalColumns& rivals,
                   std::size_t rounds, std::vector<Contender>& timed) {
   const std::size_t copies = !rivals ? 1 : size.places <= graph_places ? 3 : 2;
-  const std::size_t floats = size.places * padded_size(size.descriptor_size) * sizeof(float);
-  const std::size_t bytes = size.places * padded_bytes(size.descriptor_size) + copies * floats;
+  const std::uint64_t floats =
+      std::uint64_t{size.places} * padded_size(size.descriptor_size) * sizeof(float);
+  const std::uint64_t bytes =
+      std::uint64_t{size.places} * padded_bytes(size.descriptor_size) + copies * floats;
   if (!fits_memory(bytes, fmt::format("column of {} places", size.places))) return;
   Places places(size);
   std::vector<Contender> contenders = our_columns(places);

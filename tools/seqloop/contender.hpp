@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ struct Contender {
   std::string by;
   std::size_t places;
   std::size_t descriptor_size;
-  std::size_t bytes;                ///< that one round reads at least
+  std::uint64_t bytes;              ///< that one round reads at least
   std::function<void()> round;      ///< gone once it is timed, with what it holds
   std::function<void()> prepare{};  ///< what comes before each round and is not timed; may be none
   LatencyHistogram times{};

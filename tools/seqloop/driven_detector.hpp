@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "seqloop/detector.hpp"
@@ -14,12 +15,18 @@ namespace seqloop::program {
 /// recognised, and now and then is carried elsewhere.
 class DrivenDetector {
  public:
-  [[nodiscard]] static std::size_t bytes_needed(const MatcherConfig& config,
-                                                const Capacity& capacity);
+  [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
+                                                  const Capacity& capacity);
 
   /// Makes the map, and drives until the window is full.
   /// Work: the map, place by place, in the memory that it stays in.
-  DrivenDetector(const MatcherConfig& config, const Capacity& capacity);
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity)
+      : DrivenDetector(config, capacity, capacity.places) {}
+
+  /// The same with fewer places that are made, 4 at least. The robot drives through the first half
+  /// of them; what else the map has room for are copies of the other half, which never look like
+  /// what the robot sees.
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity, std::size_t made);
 
   /// Drives to where the next frame is, and describes what is there.
   void drive();
@@ -27,7 +34,7 @@ class DrivenDetector {
   void step() noexcept;
 
   /// Of descriptors and sketches, that a step has read on average.
-  [[nodiscard]] std::size_t bytes_a_step() const noexcept;
+  [[nodiscard]] std::uint64_t bytes_a_step() const noexcept;
   /// Of the frames, the share that was matched with a place within five of where they were.
   [[nodiscard]] double found() const noexcept;
 
@@ -39,10 +46,10 @@ class DrivenDetector {
   Detector detector_;
   std::vector<float> descriptor_;
   std::vector<double> positions_;  // by frame
-  std::size_t steps_ = 0;          // with a full window; what they did:
-  std::size_t distances_ = 0;
-  std::size_t scanned_ = 0;
-  std::size_t sketches_ = 0;
+  std::uint64_t steps_ = 0;        // with a full window; what they did:
+  std::uint64_t distances_ = 0;
+  std::uint64_t scanned_ = 0;
+  std::uint64_t sketches_ = 0;
   std::size_t found_ = 0;
 };
 

@@ -46,7 +46,7 @@ MadePlaces::MadePlaces(std::size_t size)
       noise_(size) {}
 
 std::span<const float> MadePlaces::direction(std::uint64_t number) {
-  Direction& direction = directions_[number % directions_.size()];
+  Direction& direction = directions_[static_cast<std::size_t>(number % directions_.size())];
   if (direction.number != number) {
     spread(number, direction.values);
     direction.number = number;

@@ -68,10 +68,11 @@ void match_all(Detector& detector, const Drive& drive) {
 void time_matrix(const Capacity& size, std::size_t ds, const RivalMatrices& rivals,
                  std::size_t rounds, std::vector<Contender>& timed) {
   const MatcherConfig config = config_of(ds);
-  const std::size_t drive_bytes = size.places * padded_size(size.descriptor_size) * sizeof(float);
-  const std::size_t bytes = PlaceMap::bytes_needed(config, size) +
-                            Detector::bytes_needed(config, size) + 2 * drive_bytes +
-                            size.places * size.places * sizeof(float);
+  const std::uint64_t drive_bytes =
+      std::uint64_t{size.places} * padded_size(size.descriptor_size) * sizeof(float);
+  const std::uint64_t bytes = PlaceMap::bytes_needed(config, size) +
+                              Detector::bytes_needed(config, size) + 2 * drive_bytes +
+                              std::uint64_t{size.places} * size.places * sizeof(float);
   if (!fits_memory(bytes, "matrix")) return;
   const Drive reference(size, 0.0F);
   const Drive query(size, 1.0F);

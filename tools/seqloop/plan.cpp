@@ -39,7 +39,7 @@ void plan(const PlanSettings& settings, Faults faults) {
   fmt::print("           bytes  buffer\n");
   print_buffers("map", map);
   print_buffers("detector", detector);
-  const std::size_t total = total_bytes(map) + total_bytes(detector);
+  const std::uint64_t total = total_bytes(map) + total_bytes(detector);
   fmt::print("{:>16}  in all ({:.1f} MiB)\n\n", total, static_cast<double>(total) / 1048576.0);
   fmt::print("            most  that one frame can cost\n");
   fmt::print("{:>16}  descriptor distances, {} values each\n", most.distances,

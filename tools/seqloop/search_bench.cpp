@@ -57,7 +57,7 @@ struct Window {
     }
   }
 
-  [[nodiscard]] std::size_t needed() const {
+  [[nodiscard]] std::uint64_t needed() const {
     std::vector<BufferSize> plan;
     Arena measuring(plan);
     const Trajectories measured(measuring, config.sequence_length, config.vmin, config.vmax);

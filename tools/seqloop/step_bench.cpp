@@ -51,9 +51,9 @@ std::vector<TimedMethod> timed_methods(std::size_t ds) {
 void time_steps(const Capacity& size, std::size_t ds, std::size_t rounds,
                 std::vector<Contender>& timed) {
   std::vector<TimedMethod> together;
-  std::size_t bytes = 0;
+  std::uint64_t bytes = 0;
   for (TimedMethod& method : timed_methods(ds)) {
-    const std::size_t more = DrivenDetector::bytes_needed(method.config, size);
+    const std::uint64_t more = DrivenDetector::bytes_needed(method.config, size);
     if (!fits_memory(more, fmt::format("step by {} among {} places", method.by, size.places))) {
       continue;
     }

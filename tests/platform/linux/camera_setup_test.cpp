@@ -267,6 +267,10 @@ TEST(RealSystemCalls, ReadSmallFilesAndFolders) {
   EXPECT_EQ(system.resolve("/proc/self/../self/cwd/..").front(), '/');
   EXPECT_EQ(system.resolve("/no/file"), "");
   EXPECT_EQ(system.open("/no/file").error, ENOENT);
+}
+
+TEST(RealSystemCalls, TellTheKernelsOwnError) {
+  SystemCalls& system = system_calls();
   EXPECT_EQ(system.ioctl(-1, VIDIOC_QUERYCAP, nullptr), EBADF);
   EXPECT_EQ(system.map(-1, 10, 0).error, EBADF);
 }

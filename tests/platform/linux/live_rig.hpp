@@ -22,7 +22,7 @@ class FakeDescriber : public Describer {
                                      std::span<float> descriptor) noexcept override {
     const std::uint64_t index = index_in(image.data);
     if (index == always) return Description::failed;
-    std::ranges::copy(drive_[index % drive_.size()], descriptor.begin());
+    std::ranges::copy(drive_[static_cast<std::size_t>(index % drive_.size())], descriptor.begin());
     return Description::good;
   }
   [[nodiscard]] std::string_view last_fault() const noexcept override { return "torn"; }

@@ -20,7 +20,7 @@ struct Live {
   explicit Live(std::vector<Act> acts, LiveSettings settings = patient(), bool decodes = true)
       : source(std::make_unique<FakeCamera>(
                    [acts = std::move(acts)](std::uint64_t n) {
-                     return n < acts.size() ? acts[n] : Act::frame;
+                     return n < acts.size() ? acts[static_cast<std::size_t>(n)] : Act::frame;
                    },
                    view, clock, 4294967294U),
                decodes ? std::make_unique<FakeDecoder>() : nullptr, clock, std::move(settings)) {}
@@ -97,7 +97,7 @@ TEST(LiveSource, DamagedAndUndecodableFramesAreUnreadableAndKeepTheirPlace) {
   Live live({Act::frame, Act::bad, Act::undecodable, Act::frame});
   const std::vector<std::string_view> faults = {"", "half of it is missing", "not a JPEG picture",
                                                 ""};
-  for (std::uint64_t index = 0; index < faults.size(); ++index) {
+  for (std::size_t index = 0; index < faults.size(); ++index) {
     live.view.act();
     EXPECT_EQ(live.grab(), faults[index].empty() ? Grab::frame : Grab::unreadable);
     EXPECT_EQ(live.frame.index, index);

@@ -124,10 +124,7 @@ does_not_believe_stamps_from_the_future() {
   done
 }
 
-for name in lists_the_camera captures_at_full_rate runs_at_full_rate reads_every_format \
+run_cases lists_the_camera captures_at_full_rate runs_at_full_rate reads_every_format \
   reads_a_multiplanar_camera refuses_what_it_cannot_open says_who_is_not_permitted \
   says_that_the_camera_is_busy ends_whole_at_sigterm ends_whole_at_sigint \
-  counts_on_when_the_sequence_number_wraps does_not_believe_stamps_from_the_future; do
-  run_case "$name"
-done
-finish
+  counts_on_when_the_sequence_number_wraps does_not_believe_stamps_from_the_future

@@ -130,11 +130,8 @@ ends_while_the_camera_is_lost() {
   expect "exit code 0" ends 0
 }
 
-for name in names_a_damaged_frame counts_frames_that_the_driver_drops tells_a_silent_camera \
+run_cases names_a_damaged_frame counts_frames_that_the_driver_drops tells_a_silent_camera \
   survives_a_fatal_streaming_error survives_a_refused_buffer survives_a_disconnect \
   tries_again_when_it_cannot_start_at_once finds_the_camera_again gives_up_when_told_to \
   finds_the_camera_under_another_name does_not_take_its_twin lets_go_of_a_lost_camera \
-  ends_while_the_camera_is_lost; do
-  run_case "$name"
-done
-finish
+  ends_while_the_camera_is_lost

@@ -21,6 +21,15 @@ run_case() {
   fi
 }
 
+# run_cases NAME...: those of them that CASES names, or all
+run_cases() {
+  local name
+  for name; do
+    [[ -n "${CASES:-}" && " $CASES " != *" $name "* ]] || run_case "$name"
+  done
+  exit $((failed > 0))
+}
+
 # expect WHAT COMMAND...: the case fails, saying WHAT, unless the command succeeds
 expect() {
   local what=$1
@@ -30,9 +39,10 @@ expect() {
   return 1
 }
 
-# within SECONDS COMMAND...: waits until the command succeeds, but no longer than the live run lasts
+# within SECONDS COMMAND...: waits until the command succeeds, but no longer than the live run lasts;
+# PATIENCE, if set, times as long
 within() {
-  local end=$((SECONDS + $1))
+  local end=$((SECONDS + $1 * ${PATIENCE:-1}))
   shift
   until "$@"; do
     ((SECONDS < end)) || return 1
@@ -104,9 +114,8 @@ refused() {
   local code=$1 text=$2
   shift 2
   log=$WORK/refused.log
-  timeout 30 "$SEQLOOP" run --frames 5 "$@" >/dev/null 2>"$log"
+  timeout $((30 * ${PATIENCE:-1})) "$SEQLOOP" run --frames 5 "$@" >/dev/null 2>"$log"
   local got=$?
   [ "$got" = "$code" ] || { echo "exit code $got"; return 1; }
   grep -qi "^seqloop: .*$text" "$log"
 }
-finish() { exit $((failed > 0)); }

@@ -86,9 +86,6 @@ feed_again() {
 goes_on_when_the_feeder_returns() { returns; }
 goes_on_when_it_returns_with_another_format() { returns --yuyv; }
 
-for name in plays_mjpg plays_yuyv names_truncated_frames names_corrupt_frames \
+run_cases plays_mjpg plays_yuyv names_truncated_frames names_corrupt_frames \
   waits_for_a_feeder_that_stops goes_on_when_the_feeder_returns \
-  goes_on_when_it_returns_with_another_format; do
-  run_case "$name"
-done
-finish
+  goes_on_when_it_returns_with_another_format

@@ -19,5 +19,4 @@ recognises_places() {
   grep -v '"status":"no_frame"' "$lines" >"$OUT/live.jsonl"
   cp "$log" "$OUT/live.log"
 }
-run_case recognises_places
-finish
+run_cases recognises_places

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cost/instruction_counter.hpp"
+#include "cost/made_picture.hpp"
+#include "opencv/builtin_describer.hpp"
+#include "opencv/threads.hpp"
+#include "seqloop/driven_detector.hpp"
+#include "seqloop/fault.hpp"
+#include "turbojpeg/mjpg_decoder.hpp"
+
+namespace seqloop::cost {
+namespace {
+
+constexpr std::size_t pictures = 5;
+// More than once round a map of 100,000 places, slice by slice.
+constexpr std::size_t steps = 60;
+// Of the places of a map: making more would take most of the time.
+constexpr std::size_t most_made_values = 3476 * 43'264;
+
+struct Cost {
+  std::uint64_t mean = 0;
+  std::uint64_t most = 0;
+};
+
+/// @param prepare, stage called so many times in turn; what the stage executes is counted
+template <typename Prepare, typename Stage>
+Cost cost_of(const InstructionCounter& counter, std::size_t frames, Prepare&& prepare,
+             Stage&& stage) {
+  Cost cost;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    prepare();
+    const std::uint64_t instructions = counter.count(stage);
+    cost.mean += instructions;
+    cost.most = std::max(cost.most, instructions);
+  }
+  cost.mean = (cost.mean + frames / 2) / frames;
+  return cost;
+}
+
+void print(std::string_view stage, std::string_view descriptor, std::size_t places, Cost cost) {
+  std::printf("%.*s,%.*s,%zu,%llu,%llu\n", static_cast<int>(stage.size()), stage.data(),
+              static_cast<int>(descriptor.size()), descriptor.data(), places,
+              static_cast<unsigned long long>(cost.mean),
+              static_cast<unsigned long long>(cost.most));
+  std::fflush(stdout);
+}
+
+void count_pictures(const InstructionCounter& counter, std::string_view name,
+                    Describer& describer) {
+  const std::vector<std::uint8_t> jpeg = made_jpeg();
+  const RawPicture raw{jpeg, made_width, made_height, 0, RawFormat::mjpg};
+  turbojpeg::MjpgDecoder decoder(describer.needs());
+  Image picture;
+  std::vector<float> descriptor(describer.size());
+  const auto grab = [&] {
+    const std::string_view fault = decoder.decode(raw, picture);
+    if (!fault.empty()) throw std::runtime_error(std::string(fault));
+  };
+  const auto describe = [&] {
+    if (describer.describe(picture, descriptor) != Description::good) {
+      throw std::runtime_error("the picture cannot be described");
+    }
+  };
+  // What comes first takes memory and looks functions up.
+  grab();
+  describe();
+  print("grab", name, 0,
+        cost_of(
+            counter, pictures, [] {}, grab));
+  print("describe", name, 0,
+        cost_of(
+            counter, pictures, [] {}, describe));
+}
+
+void count_matching(const InstructionCounter& counter, std::string_view name, std::size_t places,
+                    std::size_t descriptor_size) {
+  const MatcherConfig config;
+  const std::size_t made = std::min(places, most_made_values / descriptor_size);
+  program::DrivenDetector drive(config, {places, descriptor_size}, made);
+  print("match", name, places,
+        cost_of(
+            counter, steps, [&] { drive.drive(); }, [&] { drive.step(); }));
+}
+
+std::size_t parse_places(std::string_view text) {
+  std::size_t places = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), places);
+  if (error != std::errc() || end != text.data() + text.size() || places < 4) {
+    throw SetupError(Fault{"places", "'" + std::string(text) + "' is no number above 3"});
+  }
+  return places;
+}
+
+constexpr std::string_view usage =
+    "usage: seqloop-cost built-in|SQUEEZENET.onnx PLACES...\n"
+    "Counts the instructions of each stage of a frame on this thread: one made 640x480 JPEG\n"
+    "picture, and a drive through a map of so many made places. Prints\n"
+    "stage,descriptor,places,instructions_per_frame,most_instructions.\n";
+
+std::unique_ptr<Describer> open(std::string_view model) {
+  if (model == "built-in") return opencv::make_builtin_describer();
+  opencv::ModelSettings settings;
+  settings.model = model;
+  settings.layer = "pool5";
+  settings.input_width = 224;
+  settings.input_height = 224;
+  settings.mean = {104.05F, 112.51F, 116.67F};
+  settings.scale = 0.0039216F;
+  return std::make_unique<opencv::DnnDescriber>(settings);
+}
+
+void count(std::string_view model, const std::vector<std::size_t>& all_places) {
+  opencv::use_threads(1);
+  const InstructionCounter counter;
+  const std::unique_ptr<Describer> describer = open(model);
+  const std::string_view name = model == "built-in" ? model : "pool5";
+  count_pictures(counter, name, *describer);
+  for (const std::size_t places : all_places) {
+    count_matching(counter, name, places, describer->size());
+  }
+}
+
+}  // namespace
+}  // namespace seqloop::cost
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fputs(seqloop::cost::usage.data(), stderr);
+    return 2;
+  }
+  try {
+    std::vector<std::size_t> places;
+    for (int i = 2; i < argc; ++i) places.push_back(seqloop::cost::parse_places(argv[i]));
+    seqloop::cost::count(argv[1], places);
+  } catch (const seqloop::SetupError& error) {
+    std::fprintf(stderr, "seqloop-cost: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "seqloop-cost: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
