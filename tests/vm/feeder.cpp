@@ -79,12 +79,13 @@ Pictures load(const Settings& settings) {
   }
   std::ranges::sort(paths);
   if (settings.first >= paths.size()) throw std::runtime_error("too few .jpg files in the folder");
-  const auto last = settings.frames == 0
-                        ? paths.size()
-                        : std::min<std::size_t>(paths.size(), settings.first + settings.frames);
+  const auto first = static_cast<std::size_t>(settings.first);
+  const std::uint64_t last = settings.frames == 0
+                                 ? paths.size()
+                                 : std::min<std::uint64_t>(paths.size(), first + settings.frames);
   Pictures pictures;
-  pictures.size = cv::imread(paths[settings.first].string()).size();
-  for (auto at = static_cast<std::size_t>(settings.first); at < last; ++at) {
+  pictures.size = cv::imread(paths[first].string()).size();
+  for (std::size_t at = first; at < last; ++at) {
     pictures.frames.push_back(settings.yuyv ? to_yuyv(cv::imread(paths[at].string()))
                                             : read_file(paths[at]));
   }
@@ -146,7 +147,8 @@ void play(const Settings& settings) {
           std::chrono::duration<double>(settings.stop_s));
     }
     std::this_thread::sleep_until(due);
-    send(device, settings, frame, pictures.frames[frame % pictures.frames.size()]);
+    send(device, settings, frame,
+         pictures.frames[static_cast<std::size_t>(frame % pictures.frames.size())]);
   }
   close(device);
 }
