@@ -242,9 +242,13 @@ TEST_F(BadInput, TextFilesThatAreNone) {
 }
 
 TEST_F(BadInput, AbsurdFrameNumbersCostNothing) {
+  // As large as a number of frames may be on 64 bits, and on 32.
+  constexpr bool wide = sizeof(std::size_t) > 4;
+  const std::string frame = wide ? "99999999999" : "3999999999";
+  const std::string frames = wide ? "999999999999" : "4000000000";
   folder_.write("list.csv",
-                "\xEF\xBB\xBFquery,match,score,uniqueness\n99999999999,99999999999,1,1\n");
-  const test::Outcome outcome = run("eval --json --matches list.csv --frames 999999999999");
+                "\xEF\xBB\xBFquery,match,score,uniqueness\n" + frame + "," + frame + ",1,1\n");
+  const test::Outcome outcome = run("eval --json --matches list.csv --frames " + frames);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("\"correct\": 1"), std::string::npos) << outcome.out;
   folder_.write("list.csv", "query,match,score,uniqueness\n18446744073709551615,1,1,1\n");
