@@ -22,8 +22,9 @@ std::size_t columns_of(const MatcherConfig& config) {
 /// it within a window, and the rest of a vector.
 std::size_t margin_of(const MatcherConfig& config) {
   constexpr double vector = 32.0;
-  const double half = static_cast<double>(config.sequence_length / 2 + 1);
-  return static_cast<std::size_t>(std::ceil(half * std::max(config.vmax, 2.0) + vector));
+  const std::size_t half = config.sequence_length / 2 + 1;
+  const double beyond = static_cast<double>(half) * std::max(config.vmax, 2.0);
+  return static_cast<std::size_t>(std::ceil(beyond + vector));
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ Quantised quantise(std::span<const float> descriptor, std::span<std::int8_t> out
   }
   std::int32_t squares = 0;
   for (const std::int8_t byte : out.first(descriptor.size())) {
-    // Of 16 bits, because processors multiply and add these in one go.
-    const std::int16_t value = byte;
+    // Of 16 bits, because processors multiply and add these in one go. A number, no character:
+    const std::int16_t value = byte;  // NOLINT(bugprone-signed-char-misuse,cert-str34-c)
     squares += value * value;
   }
   return {static_cast<float>(static_cast<double>(highest) / largest), squares};
