@@ -1,22 +1,14 @@
 // What `plan` says against what the process really takes.
-#include <unistd.h>
-
 #include <deque>
-#include <fstream>
 
 #include "core/matcher.hpp"
 #include "expect_setup_error.hpp"
+#include "resident_memory.hpp"
 
 namespace seqloop {
 namespace {
 
-/// Resident memory of this process.
-double resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  double pages = 0.0;
-  statm >> pages >> pages;
-  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
+double resident_bytes() { return static_cast<double>(test::resident_bytes()); }
 
 TEST(Memory, ThePlanIsWhatTheProcessGrowsBy) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -1,16 +1,15 @@
 // A map of a million places: its memory is what the plan says, and no step takes more work, memory
 // or pages than in a small one.
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <random>
 #include <vector>
 
 #include "core/allocation_guard.hpp"
 #include "core/matcher.hpp"
+#include "resident_memory.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -24,12 +23,7 @@ constexpr std::uint32_t seed = 11;
 constexpr std::size_t frames = 1000;
 constexpr std::array<std::size_t, 2> stretches{250'000, 900'000};
 
-double resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  double pages = 0.0;
-  statm >> pages >> pages;
-  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
+double resident_bytes() { return static_cast<double>(test::resident_bytes()); }
 
 long page_faults() {
   rusage usage{};

@@ -1,11 +1,9 @@
 // A million frames and more, with every fault that a camera has: nothing grows, nothing is
 // miscounted.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <random>
 
@@ -13,6 +11,7 @@
 #include "linux/live_source.hpp"
 #include "linux/steady_clock.hpp"
 #include "platform/linux/live_rig.hpp"
+#include "resident_memory.hpp"
 
 namespace seqloop::live::test {
 namespace {
@@ -27,10 +26,7 @@ struct Usage {
 };
 
 Usage usage() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t pages = 0;
-  file >> pages >> pages;
-  return {pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) / 1024,
+  return {seqloop::test::resident_bytes() / 1024,
           static_cast<std::size_t>(
               std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}))};
 }
