@@ -1,9 +1,9 @@
-#include "seqloop/admitted_rows.hpp"
+#include "seqloop/detail/admitted_rows.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "seqloop/promising_rows.hpp"
+#include "seqloop/detail/promising_rows.hpp"
 
 namespace seqloop {
 namespace {

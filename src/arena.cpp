@@ -1,4 +1,4 @@
-#include "seqloop/arena.hpp"
+#include "seqloop/detail/arena.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
-#include "seqloop/candidate_ranges.hpp"
+#include "seqloop/detail/candidate_ranges.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "seqloop/keep_lowest.hpp"
+#include "seqloop/detail/keep_lowest.hpp"
 
 namespace seqloop {
 namespace {

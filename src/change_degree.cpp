@@ -1,4 +1,4 @@
-#include "seqloop/change_degree.hpp"
+#include "seqloop/detail/change_degree.hpp"
 
 #include <limits>
 

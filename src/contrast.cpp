@@ -1,4 +1,4 @@
-#include "seqloop/contrast.hpp"
+#include "seqloop/detail/contrast.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
-#include "seqloop/descriptor_rows.hpp"
+#include "seqloop/detail/descriptor_rows.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "seqloop/detail/fixed_distance.hpp"
+#include "seqloop/detail/quantised.hpp"
+#include "seqloop/detail/sketch.hpp"
 #include "seqloop/difference.hpp"
-#include "seqloop/fixed_distance.hpp"
-#include "seqloop/quantised.hpp"
-#include "seqloop/sketch.hpp"
 
 namespace seqloop {
 namespace {

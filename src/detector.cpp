@@ -24,14 +24,15 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
   }
   if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
       map.capacity() < least_places(config)) {
-    faults.push_back(
-        {"max-places", std::to_string(map.capacity()) + " leave no candidates once the map is full",
-         "take " + std::to_string(least_places(config)) + " or more with this exclude and ds"});
+    faults.push_back({"places",
+                      std::to_string(map.capacity()) + " leave no candidates once the map is full",
+                      "take " + std::to_string(least_places(config)) +
+                          " or more with this exclude and sequence_length"});
   }
   if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
       map.full_map() != config.full_map) {
     faults.push_back({"map", "it was made for another configuration",
-                      "give both the same arithmetic, difference, relocalising and full-map"});
+                      "give both the same arithmetic, difference, relocalising and full_map"});
   }
   if (config.use == Use::localise && map.size() != 0 &&
       config.standardisation.on != (map.statistics().frames() != 0)) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "seqloop/lane_sums.hpp"
+#include "seqloop/detail/lane_sums.hpp"
 
 namespace seqloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "seqloop/difference_slices.hpp"
+#include "seqloop/detail/difference_slices.hpp"
 
 #include <algorithm>
 #include <array>

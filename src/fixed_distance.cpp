@@ -1,4 +1,4 @@
-#include "seqloop/fixed_distance.hpp"
+#include "seqloop/detail/fixed_distance.hpp"
 
 #include <algorithm>
 #include <cfloat>

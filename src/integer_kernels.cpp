@@ -1,4 +1,4 @@
-#include "seqloop/integer_kernels.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 #include <algorithm>
 

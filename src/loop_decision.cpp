@@ -1,4 +1,4 @@
-#include "seqloop/loop_decision.hpp"
+#include "seqloop/detail/loop_decision.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "seqloop/integer_kernels.hpp"
-#include "seqloop/trajectories.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
+#include "seqloop/detail/trajectories.hpp"
 
 namespace seqloop {
 namespace {
@@ -42,7 +42,7 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
     faults.push_back({"vmin, vmax",
                       "no velocity m/" + std::to_string(config.sequence_length) + " lies between " +
                           number(config.vmin) + " and " + number(config.vmax),
-                      "widen the range or lengthen ds"});
+                      "widen the range or raise sequence_length"});
   }
 }
 
@@ -78,7 +78,7 @@ std::size_t least_places(const MatcherConfig& config) noexcept {
 Faults validate(const MatcherConfig& config) {
   constexpr std::size_t many = 1'000'000'000;
   Faults faults;
-  check_range(faults, "ds", config.sequence_length, 0, 2'000);
+  check_range(faults, "sequence_length", config.sequence_length, 0, 2'000);
   check_velocities(faults, config);
   check_range(faults, "rwindow", config.rwindow, 0, many);
   if (config.enhance && config.rwindow < 2) {
@@ -93,32 +93,33 @@ Faults validate(const MatcherConfig& config) {
                       "raise exclude, or lower rwindow"});
   }
   check_range(faults, "k", config.k, 1, 1'000);
-  check_range(faults, "initial-k", config.initial_k, 1, 1'000);
+  check_range(faults, "initial_k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
   if (relocalises(config)) {
-    check_range(faults, "slice", config.relocalising.slice, 2, many);
+    check_range(faults, "relocalising.slice", config.relocalising.slice, 2, many);
     const std::size_t least = distances_of_one_range(config);
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
-      faults.push_back({"distances",
+      faults.push_back({"relocalising.distances",
                         std::to_string(config.relocalising.distances) +
                             " is less than one range takes, " + std::to_string(least),
-                        "raise it, or lower num, ds or vmax, or switch enhance off"});
+                        "raise it, or lower num, sequence_length or vmax, or switch enhance off"});
     }
   }
   if (config.arithmetic != Arithmetic::float32 && config.difference != Difference::euclidean) {
-    faults.push_back({"arithmetic", "pictures are compared as float only", "--arithmetic float"});
+    faults.push_back(
+        {"arithmetic", "pictures are compared as float only", "set arithmetic to float32"});
   }
   if (config.full_map != FullMap::refuse && config.enhance) {
-    faults.push_back({"full-map", "differences are enhanced by places that would go",
-                      "--full-map refuse, or switch enhance off"});
+    faults.push_back({"full_map", "differences are enhanced by places that would go",
+                      "set full_map to refuse, or switch enhance off"});
   }
   check_range(faults, "exclude", config.exclude, 1, many);
-  check_range(faults, "frames-at-once", config.frames_at_once, 1, 64);
-  check_range(faults, "standardise-prior", config.standardisation.prior_frames, 1, many);
-  check_range(faults, "standardise-horizon", config.standardisation.horizon, 1, many);
+  check_range(faults, "frames_at_once", config.frames_at_once, 1, 64);
+  check_range(faults, "standardisation.prior_frames", config.standardisation.prior_frames, 1, many);
+  check_range(faults, "standardisation.horizon", config.standardisation.horizon, 1, many);
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {
-    faults.push_back({"max-uniqueness", number(static_cast<double>(config.max_uniqueness)) +
+    faults.push_back({"max_uniqueness", number(static_cast<double>(config.max_uniqueness)) +
                                             " is not above 0 and at most 1"});
   }
   return faults;
@@ -128,14 +129,14 @@ Faults validate(const Capacity& capacity, const MatcherConfig& config) {
   constexpr auto most_places = static_cast<std::size_t>(
       std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
   Faults faults;
-  check_range(faults, "max-places", capacity.places, 1, most_places);
-  check_range(faults, "descriptor-size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
+  check_range(faults, "places", capacity.places, 1, most_places);
+  check_range(faults, "descriptor_size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
   const bool small = config.arithmetic != Arithmetic::float32 || relocalises(config);
   if (small && capacity.descriptor_size > most_small_values) {
     faults.push_back({"arithmetic",
                       std::to_string(capacity.descriptor_size) + " values are too many for it, " +
                           std::to_string(most_small_values) + " at most",
-                      "--arithmetic float, and --relocalise off"});
+                      "set arithmetic to float32, and relocalising.on to false"});
   }
   return faults;
 }

@@ -1,4 +1,4 @@
-#include "seqloop/past_rivals.hpp"
+#include "seqloop/detail/past_rivals.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "seqloop/place_order.hpp"
+#include "seqloop/detail/place_order.hpp"
 
 namespace seqloop {
 

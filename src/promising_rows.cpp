@@ -1,4 +1,4 @@
-#include "seqloop/promising_rows.hpp"
+#include "seqloop/detail/promising_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "seqloop/keep_lowest.hpp"
+#include "seqloop/detail/keep_lowest.hpp"
 
 namespace seqloop {
 namespace {

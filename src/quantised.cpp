@@ -1,4 +1,4 @@
-#include "seqloop/quantised.hpp"
+#include "seqloop/detail/quantised.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
-#include "seqloop/running_statistics.hpp"
+#include "seqloop/detail/running_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "seqloop/detail/lane_sums.hpp"
 #include "seqloop/difference.hpp"
-#include "seqloop/lane_sums.hpp"
 
 namespace seqloop {
 

@@ -1,4 +1,4 @@
-#include "seqloop/sequence_search.hpp"
+#include "seqloop/detail/sequence_search.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "seqloop/sketch.hpp"
+#include "seqloop/detail/sketch.hpp"
 
 namespace seqloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "seqloop/trajectories.hpp"
+#include "seqloop/detail/trajectories.hpp"
 
 #include <algorithm>
 #include <cmath>

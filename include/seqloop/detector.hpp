@@ -6,19 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "seqloop/admitted_rows.hpp"
-#include "seqloop/arena.hpp"
-#include "seqloop/candidate_ranges.hpp"
-#include "seqloop/change_degree.hpp"
-#include "seqloop/difference_slices.hpp"
+#include "seqloop/detail/admitted_rows.hpp"
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_ranges.hpp"
+#include "seqloop/detail/change_degree.hpp"
+#include "seqloop/detail/difference_slices.hpp"
+#include "seqloop/detail/loop_decision.hpp"
+#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/detail/running_statistics.hpp"
+#include "seqloop/detail/sequence_search.hpp"
+#include "seqloop/detail/trajectories.hpp"
 #include "seqloop/frame_report.hpp"
-#include "seqloop/loop_decision.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
-#include "seqloop/promising_rows.hpp"
-#include "seqloop/running_statistics.hpp"
-#include "seqloop/sequence_search.hpp"
-#include "seqloop/trajectories.hpp"
 
 namespace seqloop {
 

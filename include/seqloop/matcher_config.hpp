@@ -122,7 +122,7 @@ struct Capacity {
 /// those that are too new, and a line's rows.
 [[nodiscard]] std::size_t least_places(const MatcherConfig& config) noexcept;
 
-/// @return everything that is wrong with the configuration, with the flag's name first.
+/// @return everything that is wrong with the configuration, with the member's name first.
 [[nodiscard]] Faults validate(const MatcherConfig& config);
 /// @return everything that is wrong with the capacity for this configuration.
 [[nodiscard]] Faults validate(const Capacity& capacity, const MatcherConfig& config);

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "seqloop/arena.hpp"
-#include "seqloop/descriptor_rows.hpp"
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/descriptor_rows.hpp"
+#include "seqloop/detail/place_order.hpp"
+#include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/matcher_config.hpp"
-#include "seqloop/place_order.hpp"
-#include "seqloop/running_statistics.hpp"
 
 namespace seqloop {
 

@@ -1,4 +1,4 @@
-#include "files/output_file.hpp"
+#include "seqloop/files/output_file.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

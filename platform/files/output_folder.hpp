@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "files/output_file.hpp"
+#include "seqloop/files/output_file.hpp"
 
 namespace seqloop::files {
 

@@ -1,4 +1,4 @@
-#include "linux/camera.hpp"
+#include "seqloop/linux/camera.hpp"
 
 #include <poll.h>
 

@@ -1,4 +1,4 @@
-#include "linux/camera_controls.hpp"
+#include "seqloop/linux/camera_controls.hpp"
 
 #include <linux/videodev2.h>
 

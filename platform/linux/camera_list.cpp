@@ -1,4 +1,4 @@
-#include "linux/camera_list.hpp"
+#include "seqloop/linux/camera_list.hpp"
 
 #include <algorithm>
 #include <utility>

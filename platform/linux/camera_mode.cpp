@@ -1,9 +1,9 @@
-#include "linux/camera_mode.hpp"
+#include "seqloop/linux/camera_mode.hpp"
 
 #include <array>
 #include <cstdio>
 
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::live {
 

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <utility>
 
-#include "linux/picture_format.hpp"
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/detail/picture_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::live {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "linux/camera_mode.hpp"
-#include "linux/system_calls.hpp"
+#include "seqloop/linux/camera_mode.hpp"
+#include "seqloop/linux/system_calls.hpp"
 
 namespace seqloop::live {
 

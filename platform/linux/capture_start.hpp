@@ -5,10 +5,10 @@
 #include <string>
 #include <variant>
 
-#include "linux/camera_mode.hpp"
-#include "linux/capture_stream.hpp"
-#include "linux/system_calls.hpp"
-#include "linux/video_node.hpp"
+#include "seqloop/linux/camera_mode.hpp"
+#include "seqloop/linux/detail/capture_stream.hpp"
+#include "seqloop/linux/detail/video_node.hpp"
+#include "seqloop/linux/system_calls.hpp"
 
 namespace seqloop::live {
 

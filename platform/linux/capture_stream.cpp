@@ -1,4 +1,4 @@
-#include "linux/capture_stream.hpp"
+#include "seqloop/linux/detail/capture_stream.hpp"
 
 #include <linux/videodev2.h>
 #include <poll.h>
@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::live {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "linux/camera_mode.hpp"
+#include "seqloop/linux/camera_mode.hpp"
 
 namespace seqloop::live {
 

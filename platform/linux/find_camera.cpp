@@ -1,4 +1,4 @@
-#include "linux/find_camera.hpp"
+#include "seqloop/linux/detail/find_camera.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "linux/frame_stamps.hpp"
+#include "seqloop/linux/detail/frame_stamps.hpp"
 
 #include <algorithm>
 

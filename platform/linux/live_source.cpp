@@ -1,4 +1,4 @@
-#include "linux/live_source.hpp"
+#include "seqloop/linux/live_source.hpp"
 
 #include <array>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "linux/picture_format.hpp"
+#include "seqloop/linux/detail/picture_format.hpp"
 
 #include <linux/videodev2.h>
 

@@ -1,4 +1,4 @@
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 #include <linux/videodev2.h>
 

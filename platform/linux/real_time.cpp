@@ -1,4 +1,4 @@
-#include "linux/real_time.hpp"
+#include "seqloop/linux/real_time.hpp"
 
 #include <linux/capability.h>
 #include <malloc.h>

@@ -1,4 +1,4 @@
-#include "linux/recording_capture.hpp"
+#include "seqloop/linux/recording_capture.hpp"
 
 #include <algorithm>
 #include <new>

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "linux/system_calls.hpp"
-#include "linux/video_node.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/linux/detail/video_node.hpp"
+#include "seqloop/linux/system_calls.hpp"
 
 namespace seqloop::live {
 

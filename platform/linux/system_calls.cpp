@@ -1,4 +1,4 @@
-#include "linux/system_calls.hpp"
+#include "seqloop/linux/system_calls.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>

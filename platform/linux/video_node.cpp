@@ -1,4 +1,4 @@
-#include "linux/video_node.hpp"
+#include "seqloop/linux/detail/video_node.hpp"
 
 #include <linux/videodev2.h>
 

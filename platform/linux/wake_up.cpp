@@ -1,4 +1,4 @@
-#include "linux/wake_up.hpp"
+#include "seqloop/linux/detail/wake_up.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>

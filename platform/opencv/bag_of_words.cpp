@@ -1,4 +1,4 @@
-#include "opencv/bag_of_words.hpp"
+#include "seqloop/opencv/bag_of_words.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "opencv/builtin_describer.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 #include "opencv/detail/builtin_model.hpp"
 

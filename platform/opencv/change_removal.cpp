@@ -1,4 +1,4 @@
-#include "opencv/change_removal.hpp"
+#include "seqloop/opencv/change_removal.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <string>

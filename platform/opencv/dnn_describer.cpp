@@ -1,4 +1,4 @@
-#include "opencv/dnn_describer.hpp"
+#include "seqloop/opencv/dnn_describer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "opencv/raw_decoder.hpp"
+#include "seqloop/opencv/raw_decoder.hpp"
 
 #include <array>
 #include <exception>

@@ -1,4 +1,4 @@
-#include "opencv/silence.hpp"
+#include "seqloop/opencv/silence.hpp"
 
 #include <cstdlib>
 #include <opencv2/core/utils/logger.hpp>

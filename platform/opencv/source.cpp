@@ -1,10 +1,10 @@
-#include "opencv/source.hpp"
+#include "seqloop/opencv/source.hpp"
 
 #include <string>
 
-#include "opencv/image_folder_source.hpp"
-#include "opencv/video_source.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/opencv/image_folder_source.hpp"
+#include "seqloop/opencv/video_source.hpp"
 
 namespace seqloop::opencv {
 

@@ -1,4 +1,4 @@
-#include "opencv/threads.hpp"
+#include "seqloop/opencv/threads.hpp"
 
 #include <opencv2/core/utility.hpp>
 

@@ -1,4 +1,4 @@
-#include "opencv/video_source.hpp"
+#include "seqloop/opencv/video_source.hpp"
 
 #include <algorithm>
 #include <array>

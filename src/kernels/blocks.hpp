@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "seqloop/integer_kernels.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 // What the loops of all variants share: dots.hpp, hamming.hpp and lowest_lines.hpp. A variant
 // brings types that do one step of a loop, from its own unnamed namespace, so that what is compiled

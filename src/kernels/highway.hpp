@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "kernels/blocks.hpp"
-#include "seqloop/integer_kernels.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 // The portable variant: Highway's headers turn it into the instructions that the file which
 // includes this one is compiled for. Nothing of Highway is linked.

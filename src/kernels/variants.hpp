@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "seqloop/integer_kernels.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 // Everything that some processor's build may have. Which of it is compiled, CMakeLists.txt says;
 // which of that is listed, the processor family's variants_*.cpp.

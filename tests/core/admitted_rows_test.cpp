@@ -1,5 +1,5 @@
 // What is admitted is all there, and costs no more than it may.
-#include "seqloop/admitted_rows.hpp"
+#include "seqloop/detail/admitted_rows.hpp"
 
 #include <random>
 

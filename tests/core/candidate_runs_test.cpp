@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/matcher.hpp"
-#include "seqloop/candidate_runs.hpp"
+#include "seqloop/detail/candidate_runs.hpp"
 
 namespace seqloop {
 namespace {

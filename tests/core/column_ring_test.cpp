@@ -1,5 +1,5 @@
 // The ring of columns against a table of everything that was ever computed.
-#include "seqloop/column_ring.hpp"
+#include "seqloop/detail/column_ring.hpp"
 
 #include <map>
 #include <random>

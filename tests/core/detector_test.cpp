@@ -374,7 +374,8 @@ TEST(Detector, ListsEveryFaultOfItsSetUp) {
   } catch (const SetupError& error) {
     std::vector<std::string> names;
     for (const Fault& fault : error.faults()) names.push_back(fault.what);
-    EXPECT_EQ(names, (std::vector<std::string>{"ds", "vmin", "k", "num", "max-uniqueness", "map"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"sequence_length", "vmin", "k", "num",
+                                               "max_uniqueness", "map"}));
   }
 }
 

@@ -1,5 +1,5 @@
 // Every variant that this processor has, beside the definition, to the last bit.
-#include "seqloop/integer_kernels.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 #include <gtest/gtest.h>
 

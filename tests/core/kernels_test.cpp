@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/matcher.hpp"
-#include "seqloop/contrast.hpp"
+#include "seqloop/detail/contrast.hpp"
+#include "seqloop/detail/trajectories.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/latency_histogram.hpp"
-#include "seqloop/trajectories.hpp"
 
 namespace seqloop {
 namespace {

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "seqloop/fixed_distance.hpp"
-#include "seqloop/quantised.hpp"
+#include "seqloop/detail/fixed_distance.hpp"
+#include "seqloop/detail/quantised.hpp"
 
 namespace seqloop::oracle {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "seqloop/detail/sketch.hpp"
 #include "seqloop/matcher_config.hpp"
-#include "seqloop/sketch.hpp"
 
 namespace seqloop::oracle {
 

@@ -1,5 +1,5 @@
 // Rivals of the frames before, where a frame sees only one slice of the map.
-#include "seqloop/past_rivals.hpp"
+#include "seqloop/detail/past_rivals.hpp"
 
 #include "core/matcher.hpp"
 

@@ -1,5 +1,5 @@
 // The whole map is in sight: how soon each row is looked at, and how soon a carried robot is found.
-#include "seqloop/promising_rows.hpp"
+#include "seqloop/detail/promising_rows.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,5 +1,5 @@
 // Descriptors of one byte a value, and how far they lie apart.
-#include "seqloop/quantised.hpp"
+#include "seqloop/detail/quantised.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "seqloop/detail/fixed_distance.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/difference.hpp"
-#include "seqloop/fixed_distance.hpp"
-#include "seqloop/integer_kernels.hpp"
 
 namespace seqloop {
 namespace {

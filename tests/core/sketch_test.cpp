@@ -1,4 +1,4 @@
-#include "seqloop/sketch.hpp"
+#include "seqloop/detail/sketch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "guarded_bytes.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
+#include "seqloop/detail/quantised.hpp"
 #include "seqloop/difference.hpp"
-#include "seqloop/integer_kernels.hpp"
-#include "seqloop/quantised.hpp"
 
 namespace seqloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiment/chart.hpp"
+#include "experiment/report/chart.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "experiment/made_up.hpp"
-#include "experiment/spread.hpp"
+#include "experiment/report/spread.hpp"
 
 namespace seqloop::experiment {
 namespace {

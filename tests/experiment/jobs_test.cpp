@@ -1,4 +1,4 @@
-#include "experiment/jobs.hpp"
+#include "experiment/run/jobs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "experiment/leave_out.hpp"
-#include "opencv/image_folder_source.hpp"
+#include "experiment/run/leave_out.hpp"
+#include "seqloop/opencv/image_folder_source.hpp"
 #include "shared_data.hpp"
 
 namespace seqloop::experiment {

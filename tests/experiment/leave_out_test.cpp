@@ -1,12 +1,12 @@
-#include "experiment/leave_out.hpp"
+#include "experiment/run/leave_out.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "expect_setup_error.hpp"
-#include "files/descriptor_source.hpp"
 #include "made_drive.hpp"
+#include "seqloop/files/descriptor_source.hpp"
 
 namespace seqloop::experiment {
 namespace {

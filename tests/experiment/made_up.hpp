@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiment/result.hpp"
+#include "experiment/report/result.hpp"
 
 namespace seqloop::experiment {
 

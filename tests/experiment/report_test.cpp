@@ -1,4 +1,4 @@
-#include "experiment/report.hpp"
+#include "experiment/report/report.hpp"
 
 #include <gtest/gtest.h>
 

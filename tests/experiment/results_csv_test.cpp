@@ -1,13 +1,13 @@
-#include "experiment/results_csv.hpp"
+#include "experiment/report/results_csv.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiment/columns.hpp"
 #include "experiment/made_up.hpp"
-#include "experiment/selection.hpp"
-#include "experiment/text.hpp"
+#include "experiment/report/columns.hpp"
+#include "experiment/report/selection.hpp"
+#include "experiment/report/text.hpp"
 
 namespace seqloop::experiment {
 namespace {

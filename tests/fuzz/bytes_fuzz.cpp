@@ -8,10 +8,10 @@
 
 #include "files/npy_header.hpp"
 #include "guarded_bytes.hpp"
-#include "opencv/raw_decoder.hpp"
 #include "platform/jpegs.hpp"
 #include "seqloop/fault.hpp"
-#include "turbojpeg/mjpg_decoder.hpp"
+#include "seqloop/opencv/raw_decoder.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 namespace seqloop {
 namespace {

@@ -5,6 +5,6 @@ set -eu
 made=$(mktemp)
 trap 'rm -f "$made"' EXIT
 # Debian's Python: the packages onnx and numpy come from there.
-/usr/bin/python3 "$1/tools/descriptor/make_builtin.py" --out "$made"
-cmp "$made" "$1/tools/descriptor/oriented_gradients.onnx"
+/usr/bin/python3 "$1/platform/opencv/model/make_builtin.py" --out "$made"
+cmp "$made" "$1/platform/opencv/model/oriented_gradients.onnx"
 [ "$(stat -c %s "$made")" -le 100000 ]

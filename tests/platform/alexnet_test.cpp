@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "opencv/dnn_describer.hpp"
 #include "platform/pictures.hpp"
+#include "seqloop/opencv/dnn_describer.hpp"
 
 namespace seqloop::opencv {
 namespace {

@@ -1,4 +1,4 @@
-#include "opencv/change_removal.hpp"
+#include "seqloop/opencv/change_removal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "expect_setup_error.hpp"
 #include "made_drive.hpp"
-#include "opencv/builtin_describer.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::opencv {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/allocation_guard.hpp"
-#include "opencv/raw_decoder.hpp"
 #include "platform/jpegs.hpp"
-#include "turbojpeg/mjpg_decoder.hpp"
+#include "seqloop/opencv/raw_decoder.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 namespace seqloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "files/descriptor_source.hpp"
+#include "seqloop/files/descriptor_source.hpp"
 
 #include <gtest/gtest.h>
 

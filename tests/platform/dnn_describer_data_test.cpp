@@ -5,9 +5,9 @@
 #include <cmath>
 #include <opencv2/dnn.hpp>
 
-#include "opencv/dnn_describer.hpp"
-#include "opencv/image_folder_source.hpp"
 #include "platform/pictures.hpp"
+#include "seqloop/opencv/dnn_describer.hpp"
+#include "seqloop/opencv/image_folder_source.hpp"
 #include "shared_data.hpp"
 
 namespace seqloop::opencv {

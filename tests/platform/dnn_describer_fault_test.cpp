@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "expect_setup_error.hpp"
-#include "opencv/dnn_describer.hpp"
 #include "platform/pictures.hpp"
+#include "seqloop/opencv/dnn_describer.hpp"
 
 namespace seqloop::opencv {
 namespace {

@@ -1,4 +1,4 @@
-#include "opencv/image_folder_source.hpp"
+#include "seqloop/opencv/image_folder_source.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

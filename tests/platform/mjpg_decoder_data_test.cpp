@@ -10,10 +10,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "opencv/builtin_describer.hpp"
 #include "platform/jpegs.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
 #include "shared_data.hpp"
-#include "turbojpeg/mjpg_decoder.hpp"
 
 namespace seqloop {
 namespace {

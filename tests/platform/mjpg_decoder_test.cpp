@@ -1,4 +1,4 @@
-#include "turbojpeg/mjpg_decoder.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 #include <gtest/gtest.h>
 #include <turbojpeg.h>

@@ -1,4 +1,4 @@
-#include "files/npy_file.hpp"
+#include "seqloop/files/npy_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "files/output_file.hpp"
+#include "seqloop/files/output_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "opencv/patch_describer.hpp"
+#include "seqloop/opencv/patch_describer.hpp"
 
 #include <gtest/gtest.h>
 

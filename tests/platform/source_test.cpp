@@ -1,11 +1,11 @@
-#include "opencv/source.hpp"
+#include "seqloop/opencv/source.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "expect_setup_error.hpp"
-#include "opencv/silence.hpp"
 #include "platform/pictures.hpp"
+#include "seqloop/opencv/silence.hpp"
 
 namespace seqloop::opencv {
 namespace {

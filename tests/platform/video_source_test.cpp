@@ -1,12 +1,12 @@
-#include "opencv/video_source.hpp"
+#include "seqloop/opencv/video_source.hpp"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/videoio.hpp>
 
 #include "expect_setup_error.hpp"
-#include "opencv/silence.hpp"
 #include "platform/pictures.hpp"
+#include "seqloop/opencv/silence.hpp"
 
 namespace seqloop::opencv {
 namespace {

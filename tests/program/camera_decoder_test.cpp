@@ -1,9 +1,9 @@
-#include "seqloop/camera_decoder.hpp"
+#include "program/drives/camera_decoder.hpp"
 
 #include <gtest/gtest.h>
 
-#include "opencv/builtin_describer.hpp"
 #include "platform/jpegs.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::program {
 namespace {

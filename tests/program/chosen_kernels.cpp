@@ -4,7 +4,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "seqloop/integer_kernels.hpp"
+#include "experiment/run/runner.hpp"
+#include "program/command_line.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
 
 namespace seqloop {
 
@@ -21,3 +24,8 @@ const IntegerKernels& best_integer_kernels() noexcept {
 }
 
 }  // namespace seqloop
+
+int main(int argc, char** argv) {
+  using namespace seqloop;
+  return program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
+}

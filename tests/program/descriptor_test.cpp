@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "files/npy_file.hpp"
 #include "program/program.hpp"
 #include "seqloop/difference.hpp"
+#include "seqloop/files/npy_file.hpp"
 
 namespace seqloop {
 namespace {

@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "core/oracle.hpp"
-#include "files/npy_file.hpp"
 #include "program/program.hpp"
+#include "seqloop/files/npy_file.hpp"
 
 namespace seqloop {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "expect_setup_error.hpp"
 #include "made_drive.hpp"
-#include "seqloop/drives.hpp"
+#include "program/drives/drives.hpp"
 
 namespace seqloop::program {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "core/oracle.hpp"
 #include "evaluation/csv.hpp"
-#include "files/npy_file.hpp"
 #include "program/program.hpp"
+#include "seqloop/files/npy_file.hpp"
 
 namespace seqloop {
 namespace {

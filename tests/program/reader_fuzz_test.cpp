@@ -3,11 +3,11 @@
 #include <random>
 
 #include "evaluation/measures.hpp"
-#include "experiment/experiment.hpp"
-#include "experiment/kept_result.hpp"
+#include "experiment/run/experiment.hpp"
+#include "experiment/run/kept_result.hpp"
 #include "gtest/gtest.h"
-#include "seqloop/config_file.hpp"
-#include "seqloop/matcher_settings.hpp"
+#include "program/options/config_file.hpp"
+#include "program/options/matcher_settings.hpp"
 #include "temporary_folder.hpp"
 
 namespace seqloop {

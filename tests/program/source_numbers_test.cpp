@@ -1,4 +1,4 @@
-#include "seqloop/source_numbers.hpp"
+#include "program/run/source_numbers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which frames become stills and what is cut out of them, on drives in memory.
-#include "seqloop/stills_source.hpp"
+#include "program/drives/stills_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "expect_setup_error.hpp"
 #include "made_drive.hpp"
-#include "seqloop/stills_options.hpp"
+#include "program/drives/stills_options.hpp"
 
 namespace seqloop::program {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "cost/instruction_counter.hpp"
 #include "cost/made_picture.hpp"
-#include "opencv/builtin_describer.hpp"
-#include "opencv/threads.hpp"
-#include "seqloop/driven_detector.hpp"
 #include "seqloop/fault.hpp"
-#include "turbojpeg/mjpg_decoder.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
+#include "seqloop/opencv/threads.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
+#include "synthetic/driven_detector.hpp"
 
 namespace seqloop::cost {
 namespace {

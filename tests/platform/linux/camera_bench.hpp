@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "linux/camera.hpp"
 #include "platform/linux/fake_kernel.hpp"
+#include "seqloop/linux/camera.hpp"
 
 namespace seqloop::live::test {
 

@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "expect_setup_error.hpp"
-#include "linux/camera_list.hpp"
 #include "platform/linux/camera_bench.hpp"
+#include "seqloop/linux/camera_list.hpp"
 
 namespace seqloop::live::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <linux/videodev2.h>
 
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::live {
 namespace {

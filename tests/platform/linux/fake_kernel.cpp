@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "linux/pixel_format.hpp"
+#include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::live::test {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "linux/system_calls.hpp"
 #include "seqloop/clock.hpp"
+#include "seqloop/linux/system_calls.hpp"
 
 namespace seqloop::live::test {
 

@@ -1,8 +1,8 @@
 // Indices out of sequence numbers, and moments out of time stamps.
 #include <gtest/gtest.h>
 
-#include "linux/frame_numbers.hpp"
-#include "linux/frame_stamps.hpp"
+#include "seqloop/linux/detail/frame_numbers.hpp"
+#include "seqloop/linux/detail/frame_stamps.hpp"
 
 namespace seqloop::live {
 namespace {

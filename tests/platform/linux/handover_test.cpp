@@ -1,5 +1,5 @@
 // Two threads, one exchange: nothing torn, nothing twice, nothing out of order, nothing uncounted.
-#include "linux/handover.hpp"
+#include "seqloop/linux/detail/handover.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "linux/return_queue.hpp"
+#include "seqloop/linux/detail/return_queue.hpp"
 
 namespace seqloop::live {
 namespace {

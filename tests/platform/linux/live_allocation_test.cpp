@@ -7,10 +7,10 @@
 
 #include "core/allocation_guard.hpp"
 #include "core/matcher.hpp"
-#include "linux/live_source.hpp"
-#include "linux/real_time.hpp"
-#include "linux/steady_clock.hpp"
 #include "platform/linux/live_rig.hpp"
+#include "seqloop/linux/live_source.hpp"
+#include "seqloop/linux/real_time.hpp"
+#include "seqloop/linux/steady_clock.hpp"
 
 namespace seqloop::live::test {
 namespace {

@@ -1,5 +1,5 @@
 // The source that joins a capture thread and the work thread, on a camera that acts on command.
-#include "linux/live_source.hpp"
+#include "seqloop/linux/live_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "linux/steady_clock.hpp"
 #include "platform/linux/fake_camera.hpp"
+#include "seqloop/linux/steady_clock.hpp"
 
 namespace seqloop::live::test {
 namespace {

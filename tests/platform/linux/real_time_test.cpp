@@ -1,5 +1,5 @@
 // What is asked of the system for real time, and what it says when it refuses.
-#include "linux/real_time.hpp"
+#include "seqloop/linux/real_time.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,5 +1,5 @@
 // A recording played as a camera, on a clock that nobody waits for.
-#include "linux/recording_capture.hpp"
+#include "seqloop/linux/recording_capture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "core/matcher.hpp"
-#include "linux/live_source.hpp"
-#include "linux/steady_clock.hpp"
 #include "platform/linux/live_rig.hpp"
 #include "resident_memory.hpp"
+#include "seqloop/linux/live_source.hpp"
+#include "seqloop/linux/steady_clock.hpp"
 
 namespace seqloop::live::test {
 namespace {

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
+#include "seqloop/detail/sketch.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop {
+
+/// How each descriptor is kept.
+struct DescriptorForm {
+  DescriptorForm(const MatcherConfig& config, std::size_t descriptor_size) noexcept;
+
+  Difference difference;
+  Arithmetic arithmetic;
+  bool relocalising;  ///< whether there are sketches to relocalise by
+  std::size_t size;   ///< D
+
+  bool operator==(const DescriptorForm&) const = default;
+
+  /// What a difference of 1 is in the whole numbers that `int8` and `sketch` compare by.
+  [[nodiscard]] double unit() const noexcept;
+};
+
+/// What the buffers of some rows are called in a plan.
+struct RowNames {
+  std::string_view values;
+  std::string_view lengths;
+  std::string_view sketches;
+};
+
+/// Descriptors side by side, in the form in which they are compared.
+class DescriptorRows {
+ public:
+  /// Words of a sketch that relocalising scans the map by, and those that it looks closely by.
+  static constexpr std::size_t scanned_words = 4;
+  static constexpr std::size_t close_words = 16;
+
+  /// Allocates: from the arena only.
+  DescriptorRows(Arena& arena, const RowNames& names, const DescriptorForm& form, std::size_t rows);
+
+  /// @param descriptor [D] finite. Work: D, and the sketch. Allocates: never.
+  void store(std::size_t row, std::span<const float> descriptor) noexcept;
+
+  /// Takes over a row that is kept in the same form. Work: a copy.
+  void copy(std::size_t row, const DescriptorRows& from, std::size_t from_row) noexcept;
+
+  /// Differences of one descriptor to consecutive rows, for `float32`.
+  /// @param out [count] 0 .. 2 between unit vectors. Work: count distances. Allocates: never.
+  void compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
+               std::span<float> out) const noexcept;
+
+  /// The same for `int8` and `sketch`. @param out [count] 0 .. 65,534, in `unit()`s
+  void compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
+               std::span<std::uint16_t> out) const noexcept;
+
+  /// The same of several descriptors, reading each row once for all of them; `int8` alone.
+  /// @param query rows of the queries from this one on; behind their last follows their first
+  /// @param out   one column a query, at most `most_at_once`
+  void compare(const DescriptorRows& queries, std::size_t query,
+               std::span<const std::span<std::uint16_t>> out) const noexcept;
+  static constexpr std::size_t most_at_once = 64;
+
+  /// The difference of two, 0 .. 2 between unit vectors.
+  [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;
+
+  /// Differing bits of the scanned words of one sketch and consecutive ones.
+  /// @param out [count] 0 .. 64 scanned_words. Work: count * scanned_words.
+  void scan(const DescriptorRows& queries, std::size_t query, std::size_t first,
+            std::span<std::uint32_t> out) const noexcept;
+
+  /// Differing bits of the close words of two sketches. @return 0 .. 64 close_words
+  [[nodiscard]] std::uint32_t look_closely(const DescriptorRows& queries, std::size_t query,
+                                           std::size_t row) const noexcept;
+
+  /// Has the processor fetch the sketches of consecutive rows, which will be looked at soon.
+  void prefetch_sketches(std::size_t first, std::size_t count) const noexcept;
+
+  /// About what was stored, to show or to save: exact for `float32`, to half a 127th of the largest
+  /// value for `int8`, signs for `sketch`.
+  /// @param out [restored_size()] unit L2 or zero, where that went in; zero beyond D
+  void restore(std::size_t row, std::span<float> out) const noexcept;
+  [[nodiscard]] std::size_t restored_size() const noexcept;
+
+  [[nodiscard]] const DescriptorForm& form() const noexcept { return form_; }
+
+ private:
+  [[nodiscard]] std::span<const float> exact(std::size_t row) const noexcept {
+    return exact_.subspan(row * stride_, stride_);
+  }
+  [[nodiscard]] std::span<std::int8_t> small(std::size_t row) const noexcept {
+    return small_.subspan(row * stride_, stride_);
+  }
+
+  DescriptorForm form_;
+  const IntegerKernels* kernels_;
+  std::size_t stride_;                 // values from row to row
+  std::size_t words_;                  // of a sketch
+  std::span<float> exact_;             // [rows, stride], float32
+  std::span<std::int8_t> small_;       // [rows, stride], int8
+  std::span<double> inverse_lengths_;  // [rows], int8
+  std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
+  std::span<SketchedValue> sketched_values_;
+  std::span<std::uint64_t> sketches_;  // [rows, words_]
+  std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side
+};
+
+}  // namespace seqloop

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_runs.hpp"
+#include "seqloop/detail/past_rivals.hpp"
+#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop {
+
+/// The best row among a frame's candidates and how far it stands out.
+struct BestRow {
+  std::size_t row;
+  double score;        ///< infinity never comes here
+  double uniqueness;   ///< score by the best score outside the row's window; NaN where not defined
+  std::size_t scored;  ///< candidates that had a score
+};
+
+/// Picks the best row and says how unique it is. Source: ALGORITHMS, match and confidence; D4.
+class LoopDecision {
+ public:
+  /// Allocates: from the arena only.
+  LoopDecision(Arena& arena, const MatcherConfig& config)
+      : half_window_(config.rwindow / 2), past_(arena, config) {}
+
+  /// @param scores [places], infinity for a row that no line fits
+  /// @param keep_rival whether this frame's best rival stands in later, at frames whose candidates
+  /// have none: D4 after a full search
+  /// @param promises rows that could not all be afforded: those that have no score may be rivals by
+  /// what their sketches tell
+  /// @param rows rows of the map that may be searched
+  /// @return the row with the lowest score, the lower row of equals; none when no row has a score
+  /// Work: two passes over the candidates, one over `PastRivals`. Allocates: never.
+  [[nodiscard]] std::optional<BestRow> decide(std::span<const double> scores,
+                                              std::span<const CandidateRun> runs, bool keep_rival,
+                                              std::span<const PromisingRows::Promise> promises,
+                                              std::size_t rows) noexcept;
+
+  /// Frames went by unseen.
+  void skip(std::uint64_t frames) noexcept { past_.skip(frames); }
+
+  /// A row went from the map: those behind it are counted one lower.
+  void removed(std::size_t row) noexcept { past_.removed(row); }
+
+  /// Forgets what the frames before saw, but for the rival of D4.
+  void restart() noexcept { past_.restart(); }
+
+ private:
+  std::size_t half_window_;
+  PastRivals past_;
+  std::optional<double> last_rival_;
+};
+
+}  // namespace seqloop

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop {
+
+/// Rows that looked good at the last frames. A frame that looks at one slice of a large map sees
+/// only some of the rows that rival its best one, and would be too sure of it; the frames before,
+/// whose windows overlap with its own, saw the others.
+class PastRivals {
+ public:
+  /// Allocates: from the arena only.
+  PastRivals(Arena& arena, const MatcherConfig& config);
+
+  struct Rival {
+    std::size_t row;
+    double score;
+  };
+
+  /// Begins a frame. What is remembered is taken to have moved along with it, a row a frame.
+  void next() noexcept { ++now_; }
+
+  /// @param best        the frame's best row
+  /// @param half_window rows around it that are no rivals
+  /// @param rows        rows of the map that may be searched: where one slice holds them all, the
+  /// frame has seen all rivals itself
+  /// @return the lowest score of the last frames' rivals; none where there is none
+  /// Work: ds rows at most. Allocates: never.
+  [[nodiscard]] std::optional<double> lowest(std::size_t best, std::size_t half_window,
+                                             std::size_t rows) const noexcept;
+
+  /// Remembers a row of this frame, at most two of them.
+  void remember(Rival rival) noexcept;
+
+  /// Frames went by unseen.
+  void skip(std::uint64_t frames) noexcept { now_ += frames; }
+
+  /// A row went from the map: those behind it are counted one lower. Work: ds.
+  void removed(std::size_t row) noexcept;
+
+  /// Forgets everything.
+  void restart() noexcept { remembered_ = 0; }
+
+ private:
+  struct Seen {
+    std::uint64_t frame;
+    Rival rival;
+  };
+
+  std::size_t slice_;
+  std::uint64_t now_ = 0;
+  std::uint64_t remembered_ = 0;  // ever, since the last restart
+  std::span<Seen> seen_;          // [ds], a ring
+};
+
+}  // namespace seqloop

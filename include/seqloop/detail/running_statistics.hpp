@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+
+namespace seqloop {
+
+/// Mean and variance of every feature over a drive, one frame at a time, in fixed memory.
+class RunningStatistics {
+ public:
+  /// Allocates: from the arena only, 24 bytes a feature.
+  RunningStatistics(Arena& arena, std::size_t descriptor_size);
+
+  /// Takes a frame in with the weight 1 / (frames so far + 1): exactly the mean and the variance of
+  /// all frames.
+  void observe(std::span<const float> descriptor) noexcept;
+
+  /// Moves on with a drive: the same with a weight of at least 1 / horizon, so that older frames
+  /// fade. A frame that looks like the last one that was taken in is left out, so that a robot that
+  /// stands still does not forget the drive.
+  void follow(std::span<const float> descriptor, std::size_t horizon) noexcept;
+
+  /// Starts a drive that nothing is known of from its first frame, as if that had been seen for
+  /// `frames` frames: every feature gets the mean and the variance of all of its values.
+  void start_flat(std::span<const float> descriptor, std::size_t frames) noexcept;
+
+  /// Starts from what another drive knows, as if that had been seen for `frames` frames (no more
+  /// than it really was).
+  void start_from(const RunningStatistics& other, std::size_t frames) noexcept;
+
+  /// Subtracts the mean, divides by the deviation (but by no less than a tenth of the average
+  /// deviation), and divides the whole by its L2 norm.
+  /// @param descriptor [D] read   @param out [>= D] written up to D; may be the same memory
+  /// @return false when nothing deviates (variances below 1e-45): then out is the zero vector
+  /// Error: at most 3e-7 of a value, against a deviation and a quotient that are not rounded to
+  /// float. Work: 4 D. Allocates: never.
+  bool standardise(std::span<const float> descriptor, std::span<float> out) const noexcept;
+
+  [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
+  [[nodiscard]] std::span<const double> mean() const noexcept { return mean_; }
+  [[nodiscard]] std::span<const double> variance() const noexcept { return variance_; }
+
+ private:
+  void observe_weighted(std::span<const float> descriptor, double weight) noexcept;
+  void sum_up() noexcept;
+
+  std::size_t frames_ = 0;
+  std::span<double> mean_;       // [D]
+  std::span<double> variance_;   // [D], of the population
+  std::span<float> deviation_;   // [D], its square root
+  std::span<float> last_taken_;  // [D], the last frame that `follow` took in
+  double variances_ = 0.0;       // sum of all
+  double deviations_ = 0.0;      // sum of all
+};
+
+}  // namespace seqloop

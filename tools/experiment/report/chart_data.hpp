@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiment/report/columns.hpp"
+#include "experiment/report/line_styles.hpp"
+
+namespace seqloop::experiment {
+
+struct Point {
+  double x;
+  double y;
+};
+
+/// One line of a panel, in the units of its axes.
+struct Line {
+  std::string name = {};
+  std::string value = {};  ///< written before the name
+  LineStyle style = {};
+  std::vector<Point> points = {};  ///< rising x; empty where there is nothing to draw
+  std::vector<Point> marks = {};
+  double good = 0.0;  ///< lines are listed by it, best first
+};
+
+struct Panel {
+  std::string title;
+  std::vector<Line> lines;  ///< in the order in which their names are listed
+};
+
+struct Axis {
+  std::string title;
+  Unit unit = Unit::plain;
+  double low = 0.0;
+  double high = 1.0;  ///< > low
+  std::vector<double> ticks = {};
+};
+
+/// What a figure draws.
+struct Chart {
+  Axis x;
+  Axis y;
+  std::vector<Panel> panels;
+  std::string nothing;  ///< why there is nothing to draw; empty where there is something
+  std::string note;     ///< how to read the figure
+};
+
+[[nodiscard]] Chart make_chart(const std::vector<Result>& results, const Figure& figure,
+                               const LineStyles& styles);
+
+}  // namespace seqloop::experiment

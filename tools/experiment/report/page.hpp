@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiment/report/chart_data.hpp"
+
+namespace seqloop::experiment {
+
+/// The report as one HTML page, which is well-formed XML too. It needs nothing from outside and
+/// runs no script; it only links to results.csv and the figures' files.
+/// @param charts what the report's figures draw, one each
+/// @param figure_files names of the figures' own files, one each
+[[nodiscard]] std::string page_html(const Report& report, const std::vector<Chart>& charts,
+                                    const std::vector<std::string>& figure_files);
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,149 @@
+#include "experiment/report/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+
+namespace seqloop::experiment {
+namespace {
+
+/// @return bytes of the first character; 0 where there is none that XML may hold
+std::size_t character(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> std::uint32_t {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const std::uint32_t first = byte(0);
+  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
+  if (first < 0xC2 || first > 0xF4) return 0;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  std::uint32_t code = first & (0x7FU >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80) return 0;
+    code = (code << 6U) | (byte(i) & 0x3FU);
+  }
+  constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+  const bool refused = surrogate || code > 0x10FFFF || (code & 0xFFFEU) == 0xFFFE;
+  return refused || code < least[length] ? 0 : length;
+}
+
+/// Calls `use` with every character in turn; U+FFFD for what is none.
+template <class Use>
+void for_each_character(std::string_view text, Use use) {
+  while (!text.empty()) {
+    const std::size_t length = character(text);
+    use(length == 0 ? std::string_view("\uFFFD") : text.substr(0, length));
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+}
+
+/// Width of a character in Arial, in units of the font's size.
+double advance(std::string_view character) {
+  if (character.size() > 1) return character.size() == 2 ? 0.6 : 1.0;
+  const char c = character.front();
+  if (std::string_view("ijl'|").find(c) != std::string_view::npos) return 0.23;
+  if (std::string_view("ftrI ./,:;!()[]-\"").find(c) != std::string_view::npos) return 0.33;
+  if (std::string_view("mMW%@").find(c) != std::string_view::npos) return 0.9;
+  return c >= 'A' && c <= 'Z' ? 0.7 : 0.56;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for_each_character(text, [&](std::string_view character) {
+    switch (character.front()) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += character;
+    }
+  });
+  return safe;
+}
+
+double text_width(std::string_view text, double size) {
+  double width = 0.0;
+  for_each_character(text, [&](std::string_view character) { width += advance(character) * size; });
+  return width;
+}
+
+std::string shortened(std::string_view text, double size, double width) {
+  std::vector<std::string_view> kept;
+  for_each_character(text, [&](std::string_view character) { kept.push_back(character); });
+  double needed = text_width(text, size);
+  if (needed <= width) return std::string(text);
+  needed += advance("…") * size;
+  std::size_t cut = kept.size() / 2;  // names differ at their ends
+  while (needed > width && !kept.empty()) {
+    cut = kept.size() / 2;
+    needed -= advance(kept[cut]) * size;
+    kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(cut));
+  }
+  std::string short_text;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    short_text += (i == cut ? "…" : "") + std::string(kept[i]);
+  return cut < kept.size() ? short_text : short_text + "…";
+}
+
+std::vector<std::string> wrapped(std::string_view text, double size, double width) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string word(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!lines.empty() && text_width(lines.back() + ' ' + word, size) <= width) {
+      lines.back() += ' ' + word;
+    } else {
+      lines.push_back(shortened(word, size, width));
+    }
+  }
+  return lines;
+}
+
+std::string slug(std::string_view title) {
+  constexpr std::size_t longest = 40;
+  std::string name;
+  for (const char c : title) {
+    const char small = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const bool plain = (small >= 'a' && small <= 'z') || (small >= '0' && small <= '9');
+    if (plain) name += small;
+    if (!plain && !name.empty() && name.back() != '-') name += '-';
+  }
+  name.resize(std::min(name.size(), longest));
+  while (name.ends_with('-')) name.pop_back();
+  return name;
+}
+
+double number_in(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) { return k < bytes.size() ? bytes[k] : 0U; };
+    const std::uint32_t group = (byte(i) << 16U) | (byte(i + 1) << 8U) | byte(i + 2);
+    for (const unsigned shift : {18U, 12U, 6U, 0U}) text += digits[(group >> shift) & 63U];
+  }
+  const std::size_t padding = (3 - bytes.size() % 3) % 3;
+  return text.replace(text.size() - padding, padding, padding, '=');
+}
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,125 @@
+#include "experiment/run/described_drives.hpp"
+
+#include <fmt/format.h>
+
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "experiment/run/fingerprint.hpp"
+#include "program/drives/describe_drive.hpp"
+#include "program/options/model_options.hpp"
+#include "program/options/verb.hpp"
+#include "program/process/build_info.hpp"
+
+namespace seqloop::experiment {
+namespace {
+
+/// Runs a part of the check; its faults get the section's line in front.
+template <class Part>
+void collect_at(const std::string& where, Faults& faults, Part part) {
+  Faults found;
+  program::collect(found, part);
+  for (const Fault& fault : found) {
+    faults.push_back({where, fault.what + ": " + fault.why, fault.remedy});
+  }
+}
+
+}  // namespace
+
+DescribedDrives::DescribedDrives(const Experiment& experiment, std::filesystem::path folder)
+    : experiment_(experiment), folder_(std::move(folder)) {}
+
+std::unique_ptr<FrameSource> DescribedDrives::open(const std::string& drive) const {
+  const DriveSpec& spec = experiment_.drive(drive);
+  if (program::is_described(spec.source)) {
+    throw SetupError(Fault{spec.source.string(), "holds descriptors already",
+                           "give an image folder or a video"});
+  }
+  program::DriveSettings settings;
+  settings.fps = spec.fps;
+  return make_stills(program::open_drive(spec.source, "source", settings), spec.stills);
+}
+
+void DescribedDrives::check(Faults& faults) {
+  std::map<std::string, std::string> states;  // of drives
+  for (const DriveSpec& drive : experiment_.drives) {
+    collect_at(drive.where, faults, [&] {
+      lengths_[drive.name] = open(drive.name)->frame_count();
+      states[drive.name] = text_of(drive.settings) + drive.source.string() + state_of(drive.source);
+    });
+  }
+  std::set<Wanted> wanted;
+  for (const RunSpec& run : experiment_.runs) {
+    const PairSpec& pair = experiment_.pairs[run.pair];
+    wanted.insert({pair.query, run.descriptor});
+    if (!pair.reference.empty()) wanted.insert({pair.reference, run.descriptor});
+  }
+  std::vector<std::string> made_from(experiment_.descriptors.size());
+  for (std::size_t i = 0; i < made_from.size(); ++i) {
+    const DescriptorSpec& descriptor = experiment_.descriptors[i];
+    collect_at(descriptor.where, faults, [&] {
+      const program::DriveSettings& describer = descriptor.describer;
+      program::check_describer(describer, !descriptor.training.empty());
+      made_from[i] = text_of(descriptor.settings);
+      for (const std::filesystem::path& path :
+           program::model_files(describer.model, describer.model_flags_given)) {
+        made_from[i] += path.string() + state_of(path);
+      }
+      for (const std::string& name : descriptor.training) made_from[i] += states[name];
+    });
+  }
+  for (const Wanted& each : wanted) {
+    const std::string& descriptor = experiment_.descriptors[each.descriptor].name;
+    const std::string all =
+        program::program_state() + "\n" + states[each.drive] + "\n" + made_from[each.descriptor];
+    files_[each] = folder_ / fmt::format("{}--{}--{}.npy", file_name(each.drive),
+                                         file_name(descriptor), fingerprint(all));
+  }
+}
+
+std::vector<Job> DescribedDrives::jobs() const {
+  std::vector<Job> jobs;
+  for (const auto& [wanted, file] : files_) {
+    if (std::filesystem::exists(file)) continue;
+    const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
+    std::string name = wanted.drive + " by " + descriptor.name;
+    for (const Setting& setting : descriptor.swept)
+      name += " " + setting.name + " " + setting.value;
+    // A net takes some ten times as long as what is built in.
+    const double a_frame = descriptor.describer.model.model.empty() ? 1.0 : 10.0;
+    const double frames = static_cast<double>(length(wanted.drive).value_or(1000));
+    jobs.push_back({name, frames * a_frame, [this, wanted = wanted] { describe(wanted); }});
+  }
+  return jobs;
+}
+
+std::optional<std::uint64_t> DescribedDrives::length(const std::string& drive) const {
+  const auto found = lengths_.find(drive);
+  return found == lengths_.end() ? std::nullopt : found->second;
+}
+
+std::filesystem::path DescribedDrives::file(const std::string& drive,
+                                            std::size_t descriptor) const {
+  return files_.at({drive, descriptor});
+}
+
+void DescribedDrives::describe(const Wanted& wanted) const {
+  const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
+  std::vector<std::unique_ptr<FrameSource>> training;
+  std::vector<FrameSource*> lent;
+  for (const std::string& drive : descriptor.training) {
+    lent.push_back(training.emplace_back(open(drive)).get());
+  }
+  // OpenCV keeps its log level and its threads for the whole process.
+  static std::mutex opening;
+  std::unique_lock lock(opening);
+  const auto describer = open_describer(descriptor.describer, lent);
+  lock.unlock();
+  const auto source = open(wanted.drive);
+  files::NpyWriter out(file(wanted.drive, wanted.descriptor), describer->size());
+  program::Progress silent;
+  program::describe_drive(wanted.drive, *source, *describer, out, silent);
+}
+
+}  // namespace seqloop::experiment

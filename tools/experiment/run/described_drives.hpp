@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "experiment/run/experiment.hpp"
+#include "experiment/run/jobs.hpp"
+#include "seqloop/files/npy_file.hpp"
+
+namespace seqloop::experiment {
+
+/// The descriptors that an experiment needs, in a folder: each drive described by each descriptor
+/// that some run wants of it.
+class DescribedDrives {
+ public:
+  /// @param experiment lives longer
+  DescribedDrives(const Experiment& experiment, std::filesystem::path folder);
+
+  /// Opens every drive and every model. Adds what is wrong, with the file's line.
+  void check(Faults& faults);
+
+  /// What is not there yet, to be done before anything is asked for.
+  [[nodiscard]] std::vector<Job> jobs() const;
+
+  /// Frames of a drive as far as its source knows them beforehand. After `check`.
+  [[nodiscard]] std::optional<std::uint64_t> length(const std::string& drive) const;
+
+  /// Where the descriptors are, whose name tells what they were made from. After `check`.
+  [[nodiscard]] std::filesystem::path file(const std::string& drive, std::size_t descriptor) const;
+
+  /// The drive's frames. Throws SetupError.
+  [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& drive) const;
+
+ private:
+  struct Wanted {
+    std::string drive;
+    std::size_t descriptor;
+    bool operator<(const Wanted& other) const {
+      return std::tie(drive, descriptor) < std::tie(other.drive, other.descriptor);
+    }
+  };
+
+  void describe(const Wanted& wanted) const;
+
+  const Experiment& experiment_;
+  std::filesystem::path folder_;
+  std::map<std::string, std::optional<std::uint64_t>> lengths_;
+  std::map<Wanted, std::filesystem::path> files_;
+};
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evaluation/measures.hpp"
+#include "experiment/report/result.hpp"
+#include "experiment/run/leave_out.hpp"
+#include "program/drives/drives.hpp"
+#include "program/drives/stills_source.hpp"
+#include "program/options/truth_settings.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop::experiment {
+
+/// `[[drive]]`: where pictures come from.
+struct DriveSpec {
+  std::string name;
+  std::string where;  ///< FILE:LINE
+  std::filesystem::path source;
+  program::StillsSettings stills;
+  double fps = 10.0;              ///< of an image folder
+  std::vector<Setting> settings;  ///< as written
+};
+
+/// `[[descriptor]]`: what describes them. One that sets a list of values becomes several.
+struct DescriptorSpec {
+  std::string name;
+  std::string where;
+  program::DriveSettings describer;
+  std::vector<std::string> training;  ///< names of drives
+  std::vector<Setting> settings;      ///< as written, this one's values
+  std::vector<Setting> swept;         ///< those that tell it from its siblings
+};
+
+/// `[[pair]]`: two drives along one route, or one that comes back to where it was.
+struct PairSpec {
+  std::string name;
+  std::string where;
+  std::string reference;  ///< name of a drive; empty: loops are closed within the query
+  std::string query;
+  program::TruthSettings truth;
+  std::optional<LeaveOutRule> leave_out;
+  std::vector<Setting> settings;  ///< as written
+};
+
+/// One method with one set of parameters, one descriptor, one pair: what becomes a `Result`.
+struct RunSpec {
+  std::string method;
+  std::size_t descriptor;  ///< index of it
+  std::size_t pair;        ///< likewise
+  MatcherConfig config;
+  std::vector<Setting> settings;  ///< as written, those of the descriptor that are swept included
+};
+
+/// `best-of` of a method: the best of its results over one setting is shown as one more.
+struct BestOf {
+  std::string method;
+  std::string setting;
+};
+
+/// An experiment file.
+struct Experiment {
+  std::string title;
+  std::string text;
+  bool timed = false;  ///< match one run at a time, so that none slows another down
+  evaluation::ThresholdOn threshold_on = evaluation::ThresholdOn::uniqueness;
+  std::vector<DriveSpec> drives;
+  std::vector<DescriptorSpec> descriptors;
+  std::vector<PairSpec> pairs;
+  std::vector<RunSpec> runs;
+  std::vector<BestOf> best_of;
+  std::vector<Figure> figures;
+  std::vector<Table> tables;
+
+  /// @return the drive of that name, which must be there
+  [[nodiscard]] const DriveSpec& drive(const std::string& name) const;
+};
+
+/// Reads an experiment file. Relative paths in it start at `data`; where that is empty, at what the
+/// file's own `data` says, itself seen from the file's folder.
+/// Adds every fault: unknown keys, drives, descriptors, methods, wrong values. @return what could
+/// be read, so that the rest of it can be checked too
+[[nodiscard]] Experiment read_experiment(const std::filesystem::path& file,
+                                         const std::filesystem::path& data, Faults& faults);
+
+/// The same from text that is at hand. @param file where it came from
+[[nodiscard]] Experiment parse_experiment(std::string_view text, const std::filesystem::path& file,
+                                          const std::filesystem::path& data, Faults& faults);
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "experiment/report/result.hpp"
+#include "seqloop/files/npy_file.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop::experiment {
+
+/// The descriptors of a pair of drives.
+struct DescribedPair {
+  std::optional<files::Matrix> reference;  ///< none: loops are closed within the query
+  files::Matrix query;
+};
+
+/// What one pass of the detector over a drive gave.
+struct MatchedRun {
+  std::vector<evaluation::Answer> answers;
+  double distances = 0.0;  ///< a frame, mean
+  std::uint64_t most_distances = 0;
+  double candidates = 0.0;               ///< a frame that was searched, mean
+  double seconds = 0.0;                  ///< of all steps
+  std::vector<std::uint8_t> matrix_png;  ///< empty unless asked for
+};
+
+/// Matches a drive. Memory: both drives, the map and the detector.
+/// Throws SetupError, and when the program is interrupted.
+[[nodiscard]] MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
+                                    evaluation::ThresholdOn threshold_on, bool with_matrix);
+
+}  // namespace seqloop::experiment

@@ -1,0 +1,290 @@
+#include "experiment/run/runner.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <set>
+#include <tuple>
+
+#include "experiment/report/report.hpp"
+#include "experiment/run/described_drives.hpp"
+#include "experiment/run/experiment.hpp"
+#include "experiment/run/fingerprint.hpp"
+#include "experiment/run/kept_result.hpp"
+#include "experiment/run/matched_run.hpp"
+#include "experiment/run/pair_truth.hpp"
+#include "experiment/run/summary.hpp"
+#include "files/text_file.hpp"
+#include "program/drives/drive_length.hpp"
+#include "program/options/verb.hpp"
+#include "program/process/build_info.hpp"
+#include "program/process/outputs.hpp"
+#include "seqloop/files/output_file.hpp"
+#include "seqloop/opencv/threads.hpp"
+
+namespace seqloop::experiment {
+namespace {
+
+/// Descriptors that were kept. Throws SetupError: somebody damaged them.
+files::Matrix read_kept(const std::filesystem::path& file) {
+  try {
+    return files::read_npy(file);
+  } catch (const SetupError& error) {
+    throw SetupError({file.string(), error.faults().front().why,
+                      "delete it, and the same command makes it again"});
+  }
+}
+
+class Runner {
+ public:
+  Runner(const Experiment& experiment, std::filesystem::path folder)
+      : experiment_(experiment),
+        folder_(std::move(folder)),
+        drives_(experiment, folder_ / "descriptors"),
+        kept_frames_(experiment.pairs.size()) {}
+
+  /// Adds everything that is wrong, before any work.
+  void check(Faults& faults) {
+    if (!folder_.empty()) program::check_folder(faults, folder_);
+    drives_.check(faults);
+    for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
+      const PairSpec& spec = experiment_.pairs[pair];
+      check_lengths(pair,
+                    {drives_.length(spec.reference.empty() ? spec.query : spec.reference),
+                     drives_.length(spec.query)},
+                    faults);
+    }
+  }
+
+  void run(std::size_t threads) {
+    program::make_folder(folder_ / "descriptors");
+    program::make_folder(folder_ / "runs");
+    std::vector<Job> first = drives_.jobs();
+    for (Job& job : leave_out_jobs()) first.push_back(std::move(job));
+    do_jobs("preparing", first, threads);
+    alone_ = experiment_.timed || threads == 1;
+    do_jobs("matching", match_jobs(), alone_ ? 1 : threads);
+  }
+
+  [[nodiscard]] Report report() const {
+    Report report{experiment_.title,   experiment_.text,   {}, {},
+                  experiment_.figures, experiment_.tables, {}};
+    for (const RunSpec& run : experiment_.runs) {
+      report.results.push_back(kept_result(file(run, "json")).value());
+      if (!shown_as_matrix(run)) continue;
+      const std::string png = files::read_text(file(run, "png"));
+      report.matrices.push_back({fmt::format("{}: {}", report.results.back().pair, run.method),
+                                 report.results.back().descriptor,
+                                 {png.begin(), png.end()}});
+    }
+    report.conditions = conditions(report.results);
+    add_speed_ups(experiment_, report.results);
+    add_best(experiment_, report.results);
+    return report;
+  }
+
+ private:
+  void check_lengths(std::size_t pair, const PairLengths& lengths, Faults& faults) const {
+    const PairSpec& spec = experiment_.pairs[pair];
+    static_cast<void>(pair_truth(spec, lengths, faults));
+    if (!lengths.query || !lengths.reference) return;
+    std::set<std::string> told;
+    for (const RunSpec& run : experiment_.runs) {
+      if (run.pair != pair) continue;
+      Faults found;
+      program::check_length(found, run.config, *lengths.query, *lengths.reference);
+      for (const Fault& fault : found) {
+        const std::string why = fmt::format("pair '{}', method '{}': {}: {}", spec.name, run.method,
+                                            fault.what, fault.why);
+        if (told.insert(why).second) faults.push_back({spec.where, why, fault.remedy});
+      }
+    }
+  }
+
+  std::vector<Job> leave_out_jobs() {
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
+      const PairSpec& pair = experiment_.pairs[i];
+      if (!pair.leave_out) continue;
+      const auto frames = static_cast<double>(drives_.length(pair.query).value_or(1000));
+      jobs.push_back({"dark and standing frames of " + pair.name, frames, [this, &pair, i] {
+                        kept_frames_[i] = leave_out(*drives_.open(pair.reference),
+                                                    *drives_.open(pair.query), *pair.leave_out);
+                        if (kept_frames_[i]->frames.empty()) {
+                          throw SetupError({pair.where,
+                                            "pair '" + pair.name + "' has no frame left",
+                                            "lower dark-below or standing-below"});
+                        }
+                      }});
+    }
+    return jobs;
+  }
+
+  std::vector<Job> match_jobs() const {
+    std::vector<Job> jobs;
+    for (const RunSpec& run : experiment_.runs) {
+      if (is_done(run)) continue;
+      const PairSpec& pair = experiment_.pairs[run.pair];
+      std::string name = fmt::format("{}: {}, {}", pair.name, run.method,
+                                     experiment_.descriptors[run.descriptor].name);
+      for (const Setting& setting : run.settings) {
+        const bool number = setting.value.find_first_not_of("0123456789.") == std::string::npos;
+        if (number) name += fmt::format(", {} {}", setting.name, setting.value);
+      }
+      // What a run costs is mostly what it reads for each place: all of them, or ranges of them.
+      const double share = run.config.candidates == Candidates::all ? 1.0 : 0.1;
+      const auto bytes =
+          static_cast<double>(std::filesystem::file_size(drives_.file(pair.query, run.descriptor)));
+      const auto& map = pair.reference.empty() ? pair.query : pair.reference;
+      const auto places = static_cast<double>(drives_.length(map).value_or(1000));
+      jobs.push_back({name, share * bytes * places, [this, &run] { match(run); }});
+    }
+    return jobs;
+  }
+
+  void match(const RunSpec& run) const {
+    const PairSpec& pair = experiment_.pairs[run.pair];
+    DescribedPair described = read(run);
+    const std::uint64_t places =
+        described.reference ? described.reference->rows : described.query.rows;
+    const std::uint64_t queries = described.query.rows;
+    Faults faults;
+    check_lengths(run.pair, {places, queries}, faults);
+    const evaluation::Truth truth = pair_truth(pair, {places, queries}, faults);
+    program::refuse(std::move(faults));
+
+    Result result{pair.name,
+                  run.method,
+                  experiment_.descriptors[run.descriptor].name,
+                  run.settings,
+                  places,
+                  queries,
+                  truth.frames(),
+                  described.query.columns};
+    const MatchedRun matched = match_pair(run.config, std::move(described),
+                                          experiment_.threshold_on, shown_as_matrix(run));
+    result.measures = measure(matched.answers, truth, pair.truth.tolerance, truth.frames());
+    result.distances = matched.distances;
+    result.most_distances = matched.most_distances;
+    result.candidates = matched.candidates;
+    result.seconds = matched.seconds;
+    result.alone = alone_;
+    result.made_by = program::condition_line();
+    if (shown_as_matrix(run)) {
+      files::OutputFile out(file(run, "png"));
+      out.write(std::as_bytes(std::span(matched.matrix_png)));
+      out.commit();
+    }
+    keep_result(result, file(run, "json"));
+  }
+
+  /// The pair's descriptors, without the frames that are left out.
+  [[nodiscard]] DescribedPair read(const RunSpec& run) const {
+    const PairSpec& pair = experiment_.pairs[run.pair];
+    const auto read_drive = [&](const std::string& drive) {
+      files::Matrix rows = read_kept(drives_.file(drive, run.descriptor));
+      const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
+      if (!kept) return rows;
+      for (std::size_t i = 0; i < kept->frames.size(); ++i) {
+        std::ranges::copy(rows.row(static_cast<std::size_t>(kept->frames[i])),
+                          rows.values.begin() + static_cast<std::ptrdiff_t>(i * rows.columns));
+      }
+      rows.rows = kept->frames.size();
+      rows.values.resize(rows.rows * rows.columns);
+      return rows;
+    };
+    DescribedPair described;
+    if (!pair.reference.empty()) described.reference = read_drive(pair.reference);
+    described.query = read_drive(pair.query);
+    return described;
+  }
+
+  /// Where a run's result is kept; the name tells everything that it depends on.
+  [[nodiscard]] std::filesystem::path file(const RunSpec& run, const char* extension) const {
+    const PairSpec& pair = experiment_.pairs[run.pair];
+    std::vector<std::string> from{program::program_state(),
+                                  text_of(run.settings),
+                                  run.method,
+                                  pair.name,
+                                  text_of(pair.settings),
+                                  drives_.file(pair.query, run.descriptor).filename().string(),
+                                  experiment_.timed ? "timed" : "",
+                                  std::to_string(static_cast<int>(experiment_.threshold_on))};
+    if (!pair.reference.empty()) {
+      from.push_back(drives_.file(pair.reference, run.descriptor).filename().string());
+    }
+    if (!pair.truth.file.empty() && !by_identity(pair.truth)) {
+      from.push_back(state_of(pair.truth.file));
+    }
+    for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {
+      if (!path.empty()) from.push_back(state_of(path));
+    }
+    return folder_ / "runs" /
+           fmt::format("{}--{}--{}.{}", file_name(pair.name), file_name(run.method),
+                       fingerprint(fmt::format("{}", fmt::join(from, "\n"))), extension);
+  }
+
+  [[nodiscard]] bool is_done(const RunSpec& run) const {
+    if (!kept_result(file(run, "json"))) return false;
+    // Which run is shown as a matrix depends on the others in the file.
+    return !shown_as_matrix(run) || std::filesystem::exists(file(run, "png"));
+  }
+
+  /// The first run of each method, pair and descriptor whose matrix is whole, and that compares
+  /// sequences.
+  [[nodiscard]] bool shown_as_matrix(const RunSpec& run) const {
+    const auto whole = [](const RunSpec& each) {
+      return each.config.candidates == Candidates::all && each.config.sequence_length > 0;
+    };
+    if (!whole(run)) return false;
+    const auto same = [&](const RunSpec& other) {
+      return whole(other) && std::tie(other.method, other.pair) == std::tie(run.method, run.pair) &&
+             experiment_.descriptors[other.descriptor].name ==
+                 experiment_.descriptors[run.descriptor].name;
+    };
+    return &*std::ranges::find_if(experiment_.runs, same) == &run;
+  }
+
+  /// Results may be kept from other calls: what they were matched by is what they say.
+  [[nodiscard]] std::vector<Setting> conditions(const std::vector<Result>& results) const {
+    std::set<std::string> how;
+    for (const Result& result : results) {
+      how.insert(result.made_by +
+                 (result.alone ? ", one run at a time" : ", runs at once: seconds do not compare"));
+    }
+    std::vector<Setting> all{
+        {"matched by", fmt::format("{}", fmt::join(how, "; and "))},
+        {"written", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};
+    for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
+      if (!kept_frames_[i]) continue;
+      all.push_back({experiment_.pairs[i].name,
+                     fmt::format("{} frames compared; left out: {} dark, {} standing",
+                                 kept_frames_[i]->frames.size(), kept_frames_[i]->dark,
+                                 kept_frames_[i]->standing)});
+    }
+    return all;
+  }
+
+  const Experiment& experiment_;
+  std::filesystem::path folder_;
+  DescribedDrives drives_;
+  bool alone_ = false;                                  // no run beside another
+  std::vector<std::optional<KeptFrames>> kept_frames_;  // of each pair that leaves some out
+};
+
+}  // namespace
+
+void run_experiment(const std::filesystem::path& file, const std::filesystem::path& data,
+                    const std::filesystem::path& folder, std::size_t threads, Faults faults) {
+  const Experiment experiment = read_experiment(file, data, faults);
+  opencv::use_threads(1);  // a job a core
+  Runner runner(experiment, folder);
+  runner.check(faults);
+  program::refuse(std::move(faults));
+  runner.run(threads);
+  write_report(runner.report(), folder);
+}
+
+}  // namespace seqloop::experiment

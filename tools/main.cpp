@@ -1,0 +1,9 @@
+// The program `seqloop`: all verbs, and what they cannot bring themselves.
+#include "experiment/run/runner.hpp"
+#include "program/command_line.hpp"
+#include "program/verbs/all_verbs.hpp"
+
+int main(int argc, char** argv) {
+  using namespace seqloop;
+  return program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
+}

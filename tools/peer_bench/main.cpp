@@ -1,0 +1,11 @@
+// `seqloop-rivals bench`: the program's benchmark with other libraries beside it.
+#include "peer_bench/columns.hpp"
+#include "peer_bench/matrices.hpp"
+#include "program/bench/bench.hpp"
+#include "program/command_line.hpp"
+
+int main(int argc, char** argv) {
+  using namespace seqloop;
+  return program::run_program(argc, argv,
+                              {program::bench_verb({rivals::columns, rivals::matrices})});
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "program/bench/contender.hpp"
+#include "program/drives/drives.hpp"
+
+namespace seqloop::program {
+
+/// Describes a 640x480 colour frame with the built-in descriptor, and with what is asked for beside
+/// it.
+void time_describing(const DriveSettings& drive, std::size_t rounds, std::vector<Contender>& timed);
+
+/// A whole turn of the loop: such a frame is grabbed from memory and described, then matched with
+/// so many made places; what is matched is made too, so that the robot is recognised.
+/// @param ds sequence length
+void time_loop(std::size_t places, std::size_t ds, std::size_t rounds,
+               std::vector<Contender>& timed);
+
+}  // namespace seqloop::program

@@ -1,0 +1,116 @@
+#include "program/drives/drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "program/options/model_options.hpp"
+#include "program/process/say.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/opencv/source.hpp"
+
+namespace seqloop::program {
+namespace {
+
+/// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
+void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
+  std::size_t changed = 0;
+  for (std::size_t row = 0; row < matrix.rows; ++row) {
+    const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
+    const double squares = squared_norm(values);
+    // What describe wrote is unit to rounding and must stay as it is, bit by bit.
+    if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
+    normalise(values);
+    ++changed;
+  }
+  if (changed > 0) {
+    say("{}: {} of {} rows were not unit length and have been made so", name.string(), changed,
+        matrix.rows);
+  }
+}
+
+void set_training(std::vector<std::filesystem::path>& drives, std::string_view text) {
+  drives.clear();
+  while (true) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    if (end == 0) throw std::invalid_argument("a drive has no name");
+    drives.emplace_back(text.substr(0, end));
+    if (end == text.size()) return;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// No more than can be learned from as many pictures and features as are taken.
+std::size_t parse_count_to(std::string_view text, std::size_t most) {
+  const std::size_t count = parse_count(text);
+  if (count > most) {
+    throw std::invalid_argument(std::to_string(count) + " is more than " + std::to_string(most));
+  }
+  return count;
+}
+
+}  // namespace
+
+void add_drive_options(OptionTable& options, DriveSettings& settings) {
+  options.text("descriptor", settings.descriptor,
+               "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
+  options.path("model", settings.model.model,
+               "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]");
+  const OptionTable model = model_options(settings.model);
+  for (Option option : model.options()) {
+    option.set = [&settings, name = option.name, set = option.set](std::string_view value) {
+      set(value);
+      settings.model_flags_given.push_back(name);
+    };
+    options.add(std::move(option));
+  }
+  options.add({"training", ValueKind::text,
+               "drives to learn from, image folders or videos, with commas between",
+               [&settings](std::string_view value) { set_training(settings.training, value); }});
+  options.add(
+      {"words", ValueKind::count, "words: size of the vocabulary [500]",
+       [&settings](std::string_view value) { settings.words = parse_count_to(value, 20'000); }});
+  options.add({"remove-components", ValueKind::count,
+               "Change Removal: principal components of the training drives to remove [0]",
+               [&settings](std::string_view value) {
+                 settings.remove_components = parse_count_to(value, 999);
+               }});
+  options.add({"fps", ValueKind::number,
+               "frames a second: of an image folder; of a camera, at least [10]",
+               [&settings](std::string_view value) {
+                 settings.fps = parse_number(value);
+                 if (!(settings.fps >= 1e-3 && settings.fps <= 1e6)) {
+                   throw std::invalid_argument("it must be between 0.001 and 1000000");
+                 }
+               }});
+}
+
+files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
+  files::Matrix descriptors = files::read_npy(path);
+  if (difference == Difference::euclidean) normalise_rows(descriptors, path);
+  return descriptors;
+}
+
+bool is_described(const std::filesystem::path& path) { return path.extension() == ".npy"; }
+
+std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const std::string& flag,
+                                        const DriveSettings& settings) {
+  if (path.empty()) {
+    throw SetupError({flag, "not given", "an image folder, a video or an .npy file"});
+  }
+  if (is_described(path)) {
+    return std::make_unique<files::DescriptorSource>(read_descriptors(path, settings.difference),
+                                                     settings.fps);
+  }
+  return opencv::open_source(path, {.frames_per_second = settings.fps});
+}
+
+void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
+  for (const std::string& note : source.notes()) {
+    say("{}: {}", path.string(), note);
+  }
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "program/options/options.hpp"
+#include "seqloop/describer.hpp"
+#include "seqloop/files/npy_file.hpp"
+#include "seqloop/frame_source.hpp"
+#include "seqloop/matcher_config.hpp"
+#include "seqloop/opencv/dnn_describer.hpp"
+
+namespace seqloop::program {
+
+/// A drive to open, and what to describe its pictures with.
+struct DriveSettings {
+  std::string descriptor;       ///< gradients, patches or words; empty: the model, or gradients
+  opencv::ModelSettings model;  ///< empty path: none; the input size goes for patches, too
+  std::vector<std::string> model_flags_given;
+  std::vector<std::filesystem::path> training;   ///< drives to learn from
+  std::optional<std::size_t> words;              ///< of the vocabulary [500]
+  std::optional<std::size_t> remove_components;  ///< Change Removal [0, off]
+  double fps = 10.0;
+  Difference difference = Difference::euclidean;  ///< how described drives will be compared
+};
+
+/// Flags that say how pictures are read and described. @param settings lives as long as the table
+void add_drive_options(OptionTable& options, DriveSettings& settings);
+
+/// Takes patches where they are what the difference compares and nobody says otherwise. Adds a
+/// fault for a descriptor that the difference cannot compare.
+void suit_descriptor(DriveSettings& settings, Difference difference, Faults& faults);
+
+/// Looks for what is wrong, without learning. Throws SetupError.
+void check_describer(const DriveSettings& settings, bool training_given);
+
+/// Makes what describes pictures: a model, with what the TOML file beside it says unless a flag
+/// says otherwise, or a descriptor by its name; what learns learns here, from `settings.training`.
+/// Throws SetupError.
+[[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings);
+
+/// The same, learning from drives that are open, which are read to their ends.
+/// @param training instead of `settings.training`; may be empty where nothing learns
+[[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings,
+                                                        std::span<FrameSource* const> training);
+
+/// Opens an image folder, a video or an `.npy` file. Throws SetupError.
+/// @param flag the flag that names the drive, for the message when it was not given
+[[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
+                                                      const std::string& flag,
+                                                      const DriveSettings& settings);
+
+/// Reads an `.npy` file, and brings its rows to unit length where Euclid wants that (Algorithm 1);
+/// says so where one was not. Throws SetupError.
+[[nodiscard]] files::Matrix read_descriptors(const std::filesystem::path& path,
+                                             Difference difference);
+
+/// Whether a drive was described before, so that no describer is needed.
+[[nodiscard]] bool is_described(const std::filesystem::path& path);
+
+/// Tells the user, on stderr, what the source has to say of itself.
+void tell_notes(const std::filesystem::path& path, const FrameSource& source);
+
+}  // namespace seqloop::program

@@ -1,0 +1,58 @@
+#include "program/drives/map_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "program/process/interruption.hpp"
+#include "seqloop/difference.hpp"
+#include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/pipeline.hpp"
+
+namespace seqloop::program {
+
+std::size_t descriptor_size(const FrameSource& drive, const Describer* describer) {
+  const auto* described = dynamic_cast<const files::DescriptorSource*>(&drive);
+  return described != nullptr ? described->size() : describer->size();
+}
+
+void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
+              Progress& progress) {
+  std::vector<float> buffer(map.descriptor_size());
+  std::deque<std::vector<float>> described{std::vector<float>(map.descriptor_size(), 0.0F)};
+  std::vector<std::span<const float>> places;
+  std::span<const float> last = described.front();
+  std::size_t readable = 0;
+  Frame frame;
+  for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
+    stop_if_interrupted();
+    const auto [descriptor, fault, _] = describe(grab, frame, describer, buffer);
+    if (descriptor.empty()) {
+      progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
+    } else {
+      ++readable;
+      const bool left_out = config.blank_is_unreadable && blank(config.difference, descriptor);
+      const bool stays = descriptor.data() == frame.descriptor.data();
+      if (!left_out && stays) last = descriptor;
+      if (!left_out && !stays) last = described.emplace_back(descriptor.begin(), descriptor.end());
+    }
+    if (places.size() == map.capacity()) {
+      throw SetupError({"max-places",
+                        fmt::format("the reference has more frames than the map has room for, {}",
+                                    map.capacity()),
+                        "raise --max-places"});
+    }
+    places.push_back(last);
+    progress.step();
+  }
+  progress.done();
+  if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
+  if (config.standardisation.on) {
+    for (const std::span<const float> place : places) static_cast<void>(map.learn(place));
+  }
+  for (const std::span<const float> place : places) static_cast<void>(map.add(place));
+}
+
+}  // namespace seqloop::program

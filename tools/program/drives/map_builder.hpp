@@ -1,0 +1,20 @@
+#pragma once
+
+#include "program/process/progress.hpp"
+#include "seqloop/describer.hpp"
+#include "seqloop/frame_source.hpp"
+#include "seqloop/place_map.hpp"
+
+namespace seqloop::program {
+
+/// Values in a drive's descriptors. @param describer may be null when the drive holds descriptors
+[[nodiscard]] std::size_t descriptor_size(const FrameSource& drive, const Describer* describer);
+
+/// Makes a map of a whole drive. A frame that cannot be read is told of, and its place shows what
+/// the frame before it showed, so that places stay in step with frames. Where places are
+/// standardised, descriptors are held as float until all have been seen.
+/// Throws SetupError when the map has too little room or no frame can be read.
+void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
+              Progress& progress);
+
+}  // namespace seqloop::program

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::program {
+
+/// A fault of the library's configuration in the program's words: members by their flags. Any
+/// other fault stays as it is.
+[[nodiscard]] Fault in_flags(Fault fault);
+
+}  // namespace seqloop::program

@@ -1,0 +1,157 @@
+#include "program/options/matcher_settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "program/options/flag_names.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct Method {
+  std::string name;
+  Candidates candidates;
+};
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all{{"seqslam", Candidates::all},
+                                       {"seqcnnslam", Candidates::all},
+                                       {"a-seqcnnslam", Candidates::ranges},
+                                       {"o-seqcnnslam", Candidates::adaptive},
+                                       {"single", Candidates::all}};
+  return all;
+}
+
+void resolve_method(const std::string& name, MatcherConfig& config, Faults& faults) {
+  const auto method = std::ranges::find(methods(), name, &Method::name);
+  if (method != methods().end()) {
+    config.candidates = method->candidates;
+    return;
+  }
+  const std::string advice = fmt::format("--method {}", fmt::join(method_names(), ", "));
+  if (name.empty()) {
+    faults.push_back({"method", "not given", advice});
+    return;
+  }
+  const std::string meant = nearest(name, method_names());
+  faults.push_back({"method", "'" + name + "' is no known method",
+                    meant.empty() ? advice : "did you mean '" + meant + "'?"});
+}
+
+Difference parse_difference(std::string_view text) {
+  if (text == "euclidean") return Difference::euclidean;
+  if (text == "mean-absolute") return Difference::mean_absolute;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither euclidean nor mean-absolute");
+}
+
+Arithmetic parse_arithmetic(std::string_view text) {
+  if (text == "float") return Arithmetic::float32;
+  if (text == "int8") return Arithmetic::int8;
+  if (text == "sketch") return Arithmetic::sketch;
+  throw std::invalid_argument("'" + std::string(text) + "' is none of int8, float, sketch");
+}
+
+FullMap parse_full_map(std::string_view text) {
+  if (text == "refuse") return FullMap::refuse;
+  if (text == "forget-oldest") return FullMap::forget_oldest;
+  if (text == "thin") return FullMap::thin;
+  throw std::invalid_argument("'" + std::string(text) + "' is none of refuse, forget-oldest, thin");
+}
+
+}  // namespace
+
+void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
+  MatcherConfig& config = settings.config;
+  options.text("method", settings.method,
+               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence");
+  options.flag("paper", settings.paper, "follow the paper to the letter");
+  options.add(
+      {"ds", ValueKind::count, "sequence length, frames [20]", [&settings](std::string_view value) {
+         settings.config.sequence_length = parse_count(value);
+         settings.ds_given = true;
+       }});
+  options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
+  options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
+  options.count("rwindow", config.rwindow, "rows around the best that are no rivals [10]");
+  options.count("k", config.k, "a-seqcnnslam: candidate ranges [10]");
+  options.count("num", config.num, "a range holds this many rows and one [16]");
+  options.count("reinit", config.reinit,
+                "without relocalising: matched frames from one full search to the next [450]");
+  options.count("initial-k", config.initial_k, "o-seqcnnslam: ranges at first [30]");
+  options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
+  options.add(
+      {"standardise", ValueKind::on_off,
+       "weigh features by their running statistics [on; off under --paper and for seqslam]",
+       [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
+  options.count("standardise-prior", config.standardisation.prior_frames,
+                "frames that the map's statistics count for in a new drive [20]");
+  options.count("standardise-horizon", config.standardisation.horizon,
+                "frames after which statistics have mostly moved on [100]");
+  options.number("max-uniqueness", config.max_uniqueness,
+                 "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
+  options.add(
+      {"difference", ValueKind::text,
+       "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
+       [&settings](std::string_view value) { settings.difference = parse_difference(value); }});
+  options.add({"enhance", ValueKind::on_off,
+               "enhance differences by the contrast with the rows around [off; on for seqslam]",
+               [&settings](std::string_view value) { settings.enhance = parse_on_off(value); }});
+  options.add(
+      {"arithmetic", ValueKind::text,
+       "int8: a byte a value; float; sketch: 256 bytes a place [int8; float under --paper, for "
+       "seqslam and mean-absolute]",
+       [&settings](std::string_view value) { settings.arithmetic = parse_arithmetic(value); }});
+  options.add({"relocalise", ValueKind::on_off,
+               "a- and o-seqcnnslam: look at a slice of the map at every frame, never search all "
+               "of it [on; "
+               "off under --paper]",
+               [&settings](std::string_view value) { settings.relocalise = parse_on_off(value); }});
+  options.count("slice", config.relocalising.slice,
+                "places of the map that a frame looks at to relocalise [4096]");
+  options.count("distances", config.relocalising.distances,
+                "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
+  options.add({"full-map", ValueKind::text,
+               "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
+               "where they are densest [refuse]",
+               [&config](std::string_view value) { config.full_map = parse_full_map(value); }});
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+bool compares_patches(const MatcherSettings& settings) {
+  const bool seqslam = settings.method == "seqslam";
+  return settings.difference ? *settings.difference == Difference::mean_absolute : seqslam;
+}
+
+MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) {
+  MatcherConfig config = settings.config;
+  config.use = use;
+  const bool patches = compares_patches(settings);
+  config.difference = patches ? Difference::mean_absolute : Difference::euclidean;
+  config.enhance = settings.enhance.value_or(settings.method == "seqslam");
+  config.standardisation.on = settings.standardise.value_or(!settings.paper && !patches);
+  config.blank_is_unreadable = !settings.paper;
+  resolve_method(settings.method, config, faults);
+  config.arithmetic = settings.arithmetic.value_or(settings.paper || patches ? Arithmetic::float32
+                                                                             : Arithmetic::int8);
+  config.relocalising.on = settings.relocalise.value_or(!settings.paper);
+  if (settings.method == "single") {
+    config.sequence_length = 0;
+    if (settings.ds_given)
+      faults.push_back({"ds", "single images are no sequence", "leave ds out"});
+  } else if (config.sequence_length == 0) {
+    faults.push_back({"ds", "0 frames are no sequence", "take --method single, or 1 or more"});
+  }
+  for (Fault& fault : validate(config)) faults.push_back(in_flags(std::move(fault)));
+  return config;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/options/options.hpp"
+#include "seqloop/matcher_config.hpp"
+
+namespace seqloop::program {
+
+/// The matcher as the command line puts it.
+struct MatcherSettings {
+  MatcherConfig config;
+  std::string method;
+  bool paper = false;
+  bool ds_given = false;
+  std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says
+  std::optional<bool> standardise;       ///< on unless --paper or SeqSLAM, when nobody says
+  std::optional<bool> enhance;           ///< on for SeqSLAM alone, when nobody says
+  std::optional<Arithmetic> arithmetic;  ///< float under --paper and for SeqSLAM, otherwise int8
+  std::optional<bool> relocalise;        ///< on unless --paper, when nobody says
+};
+
+/// @param settings lives as long as the table
+void add_matcher_options(OptionTable& options, MatcherSettings& settings);
+
+/// What `--method` can be.
+[[nodiscard]] std::vector<std::string> method_names();
+
+/// Whether patch-normalised pictures are compared, as SeqSLAM does, not unit vectors.
+[[nodiscard]] bool compares_patches(const MatcherSettings& settings);
+
+/// @param faults everything that is wrong is added
+/// @return the configuration to build a detector with, if there were none
+[[nodiscard]] MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults);
+
+}  // namespace seqloop::program

@@ -1,0 +1,96 @@
+#include "program/options/truth_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "program/options/verb.hpp"
+
+namespace seqloop::program {
+namespace {
+
+constexpr double default_radius_m = 25.0;
+
+bool by_positions(const TruthSettings& settings) {
+  return !settings.reference_positions.empty() || !settings.query_positions.empty();
+}
+
+evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) {
+  std::optional<evaluation::Positions> reference;
+  std::optional<evaluation::Positions> query;
+  const auto read = [&](auto& into, const std::filesystem::path& file, const std::string& flag) {
+    if (file.empty()) {
+      faults.push_back({flag, "not given, but the other drive's are", "--" + flag + " FILE.csv"});
+      return;
+    }
+    collect(faults,
+            [&] { into = evaluation::Positions::from_csv(evaluation::CsvTable::read(file)); });
+  };
+  read(reference, settings.reference_positions, "reference-positions");
+  read(query, settings.query_positions, "query-positions");
+  if (!settings.file.empty()) {
+    faults.push_back({"truth", "positions are given too", "leave one of them out"});
+  }
+  evaluation::Truth truth;
+  const double radius_m = settings.radius_m.value_or(default_radius_m);
+  if (reference && query) {
+    collect(faults, [&] {
+      truth = evaluation::Truth::from_positions(std::move(*reference), *query, radius_m);
+    });
+  } else if (!(radius_m > 0.0)) {
+    faults.push_back({"radius", "it must be above 0 metres"});
+  }
+  return truth;
+}
+
+}  // namespace
+
+void add_truth_options(OptionTable& options, TruthSettings& settings) {
+  options.path("truth", settings.file,
+               "identity, or a CSV file query,reference and, where a row has its own, tolerance "
+               "[identity]");
+  options.count("tolerance", settings.tolerance,
+                "frames by which a match may be off; not with positions [2]");
+  options.path("reference-positions", settings.reference_positions,
+               "truth by where frames were: CSV frame,x,y (metres) or "
+               "frame,latitude,longitude (degrees)");
+  options.path("query-positions", settings.query_positions, "likewise, of the queries");
+  options.add({"radius", ValueKind::number, "metres by which a match may be off [25]",
+               [&settings](std::string_view value) { settings.radius_m = parse_number(value); }});
+}
+
+bool by_identity(const TruthSettings& settings) {
+  return settings.file == "identity" || (settings.file.empty() && !by_positions(settings));
+}
+
+evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
+  evaluation::Truth truth;
+  if (by_positions(settings)) {
+    truth = read_positions(settings, faults);
+  } else if (settings.radius_m) {
+    faults.push_back({"radius", "it goes with positions, and none are given",
+                      "--reference-positions R.csv --query-positions Q.csv"});
+  }
+  if (!settings.file.empty() && !by_identity(settings)) {
+    collect(faults, [&] {
+      truth = evaluation::Truth::from_csv(evaluation::CsvTable::read(settings.file));
+    });
+  }
+  return truth;
+}
+
+evaluation::ThresholdOn parse_threshold(std::string_view text) {
+  if (text == "uniqueness") return evaluation::ThresholdOn::uniqueness;
+  if (text == "score") return evaluation::ThresholdOn::score;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither uniqueness nor score");
+}
+
+std::string how_near(const TruthSettings& settings) {
+  if (by_positions(settings)) {
+    return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
+  }
+  return fmt::format("{} frames", settings.tolerance);
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "evaluation/measures.hpp"
+#include "evaluation/truth.hpp"
+#include "program/options/options.hpp"
+
+namespace seqloop::program {
+
+/// Where the truth about a drive comes from.
+struct TruthSettings {
+  std::filesystem::path file;  ///< or `identity`; empty: positions where given, else identity
+  std::size_t tolerance = 2;   ///< frames; not with positions
+  std::filesystem::path reference_positions;
+  std::filesystem::path query_positions;
+  std::optional<double> radius_m;
+};
+
+/// @param settings lives as long as the table
+void add_truth_options(OptionTable& options, TruthSettings& settings);
+
+/// Whether frame i of the query shows place i.
+[[nodiscard]] bool by_identity(const TruthSettings& settings);
+
+/// The truth, unless it is identity, for which somebody has to say how long it is. Adds faults.
+[[nodiscard]] evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults);
+
+/// What `--threshold-on` says. Throws std::invalid_argument: why not.
+[[nodiscard]] evaluation::ThresholdOn parse_threshold(std::string_view text);
+
+/// How far off a right answer may be, in words.
+[[nodiscard]] std::string how_near(const TruthSettings& settings);
+
+}  // namespace seqloop::program

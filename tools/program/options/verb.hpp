@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "program/options/options.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::program {
+
+/// One subcommand: its settings, and what it does once they are all set.
+struct Verb {
+  std::string name;
+  std::string help;
+  OptionTable options;
+  /// Told what is wrong with the command line already, so that all faults come out at once.
+  /// Throws SetupError (exit 2), anything else (exit 1).
+  std::function<void(Faults)> run;
+};
+
+/// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
+template <class Part>
+void collect(Faults& faults, Part part) {
+  try {
+    part();
+  } catch (const SetupError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+  }
+}
+
+/// Refuses a set-up that has faults.
+inline void refuse(Faults faults) {
+  if (!faults.empty()) throw SetupError(std::move(faults));
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,54 @@
+#include "program/process/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "program/process/say.hpp"
+
+namespace seqloop::program {
+namespace {
+
+constexpr std::string_view clear_line = "\r\033[K";
+
+}  // namespace
+
+Progress::Progress(std::string doing, std::optional<std::uint64_t> frames)
+    : doing_(std::move(doing)), frames_(frames), shown_(isatty(STDERR_FILENO) == 1) {}
+
+void Progress::step() {
+  ++done_;
+  if (!shown_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  draw();
+}
+
+void Progress::tell(std::string_view message) {
+  if (shown_) say_raw(clear_line);
+  say("{}", message);
+}
+
+void Progress::done() {
+  if (shown_) say_raw(clear_line);
+}
+
+void Progress::draw() const {
+  constexpr std::uint64_t width = 30;
+  const std::chrono::duration<double> passed = drawn_ - start_;
+  const double rate = static_cast<double>(done_) / std::max(passed.count(), 1e-9);
+  if (!frames_ || *frames_ == 0) {
+    say_raw(fmt::format("{}{} frame {}, {:.0f} frames/s", clear_line, doing_, done_, rate));
+    return;
+  }
+  const std::uint64_t filled = std::min(width, done_ * width / *frames_);
+  const double left = static_cast<double>(*frames_ - std::min(*frames_, done_)) / rate;
+  say_raw(fmt::format("{}{} [{:#<{}}{:.<{}}] {}/{}, {:.0f} frames/s, {:.0f} s left", clear_line,
+                      doing_, "", filled, "", width - filled, done_, *frames_, rate, left));
+}
+
+}  // namespace seqloop::program

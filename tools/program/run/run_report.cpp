@@ -1,0 +1,80 @@
+#include "program/run/run_report.hpp"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "program/options/loop_options.hpp"
+#include "program/process/build_info.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double milliseconds(Nanoseconds duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+Json stage_json(const LatencyHistogram& times) {
+  Json json;
+  json["p50_ms"] = milliseconds(times.quantile(0.5));
+  json["p99_ms"] = milliseconds(times.quantile(0.99));
+  json["p999_ms"] = milliseconds(times.quantile(0.999));
+  json["max_ms"] = milliseconds(times.maximum());
+  json["buckets"] = Json::array();
+  for (std::size_t bucket = 0; bucket < LatencyHistogram::buckets; ++bucket) {
+    const std::uint64_t count = times.count_in(bucket);
+    if (count == 0) continue;
+    json["buckets"].push_back({milliseconds(LatencyHistogram::longest_in(bucket)), count});
+  }
+  return json;
+}
+
+Json budget_json(const Budget& budget) {
+  return {{"total", milliseconds(budget.total)},
+          {"age", milliseconds(budget.age)},
+          {"grab", milliseconds(budget.grab)},
+          {"describe", milliseconds(budget.describe)},
+          {"match", milliseconds(budget.match)}};
+}
+
+}  // namespace
+
+std::string run_report(const RunSummary& summary, const RunConditions& conditions) {
+  Json json;
+  json["conditions"] = condition_line();
+  json["source"] = conditions.source.string();
+  json["capture"] = conditions.capture;
+  json["method"] = conditions.method;
+  json["ds"] = conditions.config.sequence_length;
+  json["places"] = conditions.places;
+  json["descriptor_size"] = conditions.descriptor_size;
+  json["budget_ms"] = budget_json(conditions.budget);
+  json["overload"] = {{"policy", name(conditions.overload.policy)},
+                      {"every", conditions.overload.every},
+                      {"after", conditions.overload.after},
+                      {"recover", conditions.overload.recover},
+                      {"times", conditions.overloads},
+                      {"frames", summary.overloaded()}};
+  json["frames"] = summary.frames();
+  for (std::size_t gate = 0; gate < gates; ++gate) {
+    json["gates"][std::string(name(static_cast<Gate>(gate)))] = summary.at(static_cast<Gate>(gate));
+  }
+  if (const auto& counts = summary.capture()) {
+    json["captured"] = {{"grabbed", counts->delivered}, {"taken", summary.frames()},
+                        {"dropped", counts->dropped},   {"failed", counts->failed},
+                        {"lost", counts->lost},         {"silences", counts->silences}};
+  }
+  json["misses"] = summary.misses();
+  for (const auto& [limit, frames] : summary.missed()) json["missed"][std::string(limit)] = frames;
+  json["dropped"] = summary.dropped();
+  json["lost"] = summary.lost();
+  for (const StageRecord& stage : summary.stages()) {
+    json["stages"][stage.name] = stage_json(stage.times);
+  }
+  json["page_faults"] = {{"minor", conditions.cost.minor_faults},
+                         {"major", conditions.cost.major_faults}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,125 @@
+#include "program/run/run_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "program/drives/camera_decoder.hpp"
+#include "program/drives/drive_length.hpp"
+#include "program/drives/live_camera.hpp"
+#include "program/drives/map_builder.hpp"
+#include "program/options/verb.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/outputs.hpp"
+#include "seqloop/linux/recording_capture.hpp"
+
+namespace seqloop::program {
+namespace {
+
+/// Rows that the map needs: asked for, or as many as the drive has, or a round number.
+std::size_t places_for(const RunSettings& settings, const FrameSource* drive) {
+  constexpr std::size_t unknown_length = 20'000;
+  if (settings.max_places > 0) return settings.max_places;
+  const auto frames = drive == nullptr ? std::nullopt : drive->frame_count();
+  return static_cast<std::size_t>(frames.value_or(unknown_length));
+}
+
+void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) {
+  std::vector<std::filesystem::path> inputs = settings.drive.training;
+  inputs.insert(inputs.end(), {settings.source, settings.reference});
+  refuse_overwriting(faults, settings.out, inputs);
+  collect(faults, [&] { setup.out = std::make_unique<files::OutputFile>(settings.out); });
+  if (!settings.summary.empty()) {
+    refuse_overwriting(faults, settings.summary, inputs);
+    if (settings.summary == settings.out) {
+      faults.push_back({"summary", "is the same file as --out", "name another one"});
+    }
+    collect(faults, [&] { setup.summary = std::make_unique<files::OutputFile>(settings.summary); });
+  }
+  if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
+}
+
+void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
+                 Clock& clock, Faults& faults) {
+  if (!is_camera(settings.source)) {
+    collect(faults, [&] { setup.recording = open_drive(settings.source, "source", drive); });
+    return;
+  }
+  if (!settings.pictures.empty()) {
+    faults.push_back({"pictures", "a camera cannot be looked at again",
+                      "record the drive and give the recording, or leave --pictures out"});
+  }
+  // Without a describer there is a fault already, and nothing to choose a mode for.
+  if (!setup.describer) return;
+  collect(faults, [&] {
+    LiveCamera camera = open_camera(settings.source, settings.camera, drive.fps, *setup.describer,
+                                    settings.real_time, clock);
+    setup.live = std::move(camera.source);
+    setup.capture = std::move(camera.mode);
+  });
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> RunSetup::frame_count(std::size_t wanted) const noexcept {
+  const auto frames = recording ? recording->frame_count() : std::nullopt;
+  if (wanted == 0) return frames;
+  return std::min<std::uint64_t>(wanted, frames.value_or(wanted));
+}
+
+RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
+  RunSetup setup;
+  open_outputs(setup, settings, faults);
+  const bool closing = settings.reference.empty();
+  setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  setup.budget = budget(settings.loop, faults);
+  setup.overload = overload_rule(settings.loop, faults);
+  prepare(settings.real_time, faults);
+  if (!(settings.give_up_s >= 0.0)) faults.push_back({"give-up-s", "it must be 0 (never) or more"});
+  if (settings.pace == Pace::live && !settings.pictures.empty() && !is_camera(settings.source)) {
+    faults.push_back({"pictures", "at live pace frames may be missing from them",
+                      "leave --pace live or --pictures out"});
+  }
+  DriveSettings drive = settings.drive;
+  drive.difference = setup.config.difference;
+  const bool pictures = !is_described(settings.source);
+  if (pictures || !(closing || is_described(settings.reference))) {
+    suit_descriptor(drive, setup.config.difference, faults);
+    collect(faults, [&] { setup.describer = open_describer(drive); });
+  }
+  if (!closing) {
+    collect(faults, [&] { setup.reference = open_drive(settings.reference, "reference", drive); });
+  }
+  open_source(setup, settings, drive, clock, faults);
+  refuse(faults);
+
+  const auto size_of = [&](const FrameSource* recording) {
+    return recording != nullptr ? descriptor_size(*recording, setup.describer.get())
+                                : setup.describer->size();
+  };
+  setup.descriptor_size = size_of(setup.recording.get());
+  setup.places = places_for(settings, closing ? setup.recording.get() : setup.reference.get());
+  if (setup.reference && size_of(setup.reference.get()) != setup.descriptor_size) {
+    faults.push_back({"reference, source",
+                      fmt::format("descriptors of {} and of {} values",
+                                  size_of(setup.reference.get()), setup.descriptor_size),
+                      "describe both with the same model and layer"});
+  }
+  if (const auto frames = setup.recording ? setup.recording->frame_count() : std::nullopt) {
+    check_length(faults, setup.config, *frames, setup.places);
+  }
+  refuse(std::move(faults));
+  return setup;
+}
+
+void start_playing(RunSetup& setup, const RunSettings& settings, Clock& clock) {
+  if (setup.live || settings.pace != Pace::live) return;
+  setup.live = std::make_unique<live::LiveSource>(
+      std::make_unique<live::RecordingCapture>(*setup.recording, clock),
+      setup.describer ? std::make_unique<CameraDecoder>(setup.describer->needs()) : nullptr, clock,
+      live_settings(settings.real_time));
+}
+
+}  // namespace seqloop::program

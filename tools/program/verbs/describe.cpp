@@ -1,0 +1,87 @@
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "program/drives/describe_drive.hpp"
+#include "program/drives/drives.hpp"
+#include "program/drives/live_camera.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/outputs.hpp"
+#include "program/process/progress.hpp"
+#include "program/process/say.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/files/npy_file.hpp"
+#include "seqloop/linux/steady_clock.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct DescribeSettings {
+  std::filesystem::path source;
+  std::filesystem::path out;
+  std::size_t frames = 0;  ///< 0: all
+  DriveSettings drive;
+  CameraSettings camera;
+};
+
+void describe(const DescribeSettings& settings, Faults faults) {
+  take_interruptions();
+  live::SteadyClock clock;
+  const bool camera = is_camera(settings.source);
+  std::unique_ptr<Describer> describer;
+  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<files::NpyWriter> out;
+  collect(faults, [&] { describer = open_describer(settings.drive); });
+  if (is_described(settings.source)) {
+    faults.push_back({"source", settings.source.string() + " holds descriptors already",
+                      "give an image folder or a video"});
+  } else if (!camera) {
+    collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
+  }
+  std::vector<std::filesystem::path> inputs = settings.drive.training;
+  inputs.push_back(settings.source);
+  refuse_overwriting(faults, settings.out, inputs);
+  if (settings.out.empty()) {
+    faults.push_back({"out", "not given", "--out D.npy"});
+  } else {
+    const std::size_t size = describer ? describer->size() : 1;
+    collect(faults, [&] { out = std::make_unique<files::NpyWriter>(settings.out, size); });
+  }
+  refuse(std::move(faults));
+  if (camera) {
+    LiveCamera opened =
+        open_camera(settings.source, settings.camera, settings.drive.fps, *describer, {}, clock);
+    say("{}: {}", settings.source.string(), opened.mode);
+    source = std::move(opened.source);
+  }
+
+  Progress progress("describing", source->frame_count());
+  const DescribedCount count = describe_drive(settings.source.string(), *source, *describer, *out,
+                                              progress, {settings.frames, camera});
+  say("{} frames of {} values in {}", out->rows(), describer->size(), settings.out.string());
+  if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
+  if (count.missing > 0) {
+    say("{} frames that were lost or dropped are rows of zeros", count.missing);
+  }
+  if (count.blank > 0) say("{} frames are blank, without any feature", count.blank);
+}
+
+}  // namespace
+
+Verb describe_verb() {
+  const auto settings = std::make_shared<DescribeSettings>();
+  Verb verb{
+      "describe", "Write the descriptors of every frame of a drive", {}, [settings](Faults faults) {
+        describe(*settings, std::move(faults));
+      }};
+  verb.options.path("source", settings->source,
+                    "camera (/dev/video0, until interrupted), image folder or video file");
+  verb.options.path("out", settings->out,
+                    "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
+  verb.options.count("frames", settings->frames, "stop after so many frames [0: all]");
+  add_camera_options(verb.options, settings->camera);
+  add_drive_options(verb.options, settings->drive);
+  return verb;
+}
+
+}  // namespace seqloop::program

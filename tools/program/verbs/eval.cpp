@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "evaluation/measures.hpp"
+#include "program/options/truth_settings.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/say.hpp"
+#include "program/verbs/all_verbs.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct EvalSettings {
+  std::filesystem::path matches;
+  TruthSettings truth;
+  std::size_t frames = 0;
+  std::optional<evaluation::ThresholdOn> threshold_on;  ///< uniqueness, when nobody says
+  bool json = false;
+  std::filesystem::path experiment;
+  std::filesystem::path out;
+  std::filesystem::path data;
+  std::size_t jobs = 0;  ///< 0: as many as there are cores
+};
+
+/// Identity needs to know how many queries there are: as many as asked, or as the matches reach.
+std::uint64_t identity_frames(const EvalSettings& settings,
+                              const std::vector<evaluation::Answer>& answers) {
+  if (settings.frames > 0) return settings.frames;
+  std::uint64_t frames = 0;
+  for (const evaluation::Answer& answer : answers) frames = std::max(frames, answer.query + 1);
+  return frames;
+}
+
+void eval_matches(const EvalSettings& settings, Faults faults) {
+  std::vector<evaluation::Answer> answers;
+  if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
+  if (!settings.matches.empty()) {
+    collect(faults, [&] {
+      answers = evaluation::read_answers(
+          evaluation::CsvTable::read(settings.matches),
+          settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
+    });
+  }
+  evaluation::Truth truth = read_truth(settings.truth, faults);
+  const bool identity = by_identity(settings.truth);
+  if (!identity && settings.frames > 0 && settings.frames < truth.frames()) {
+    faults.push_back(
+        {"frames",
+         fmt::format("{} is fewer than have a truth, {}", settings.frames, truth.frames()),
+         "leave --frames out"});
+  }
+  refuse(std::move(faults));
+  if (identity) truth = evaluation::Truth::identity(identity_frames(settings, answers));
+
+  const std::uint64_t frames = settings.frames > 0 ? settings.frames : truth.frames();
+  const evaluation::Measures measures = measure(answers, truth, settings.truth.tolerance, frames);
+  if (settings.json) {
+    const nlohmann::ordered_json json{
+        {"frames", frames},
+        {"answered", measures.answered},
+        {"correct", measures.correct},
+        {"precision", measures.precision},
+        {"recall", measures.recall},
+        {"recall_at_100_precision", measures.recall_at_100_precision},
+        {"area_under_curve", measures.area_under_curve},
+    };
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
+             measures.answered, measures.correct, how_near(settings.truth));
+  fmt::print("{:>8.3f} precision\n{:>8.3f} recall\n", measures.precision, measures.recall);
+  fmt::print("{:>8.3f} recall at 100 % precision\n{:>8.3f} area under the curve\n",
+             measures.recall_at_100_precision, measures.area_under_curve);
+}
+
+/// What belongs to match lists only, and what to experiments only.
+void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, Faults faults) {
+  if (settings.experiment.empty()) {
+    for (const auto& [flag, path] : {std::pair{"out", &settings.out}, {"data", &settings.data}}) {
+      if (!path->empty())
+        faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
+    }
+    eval_matches(settings, std::move(faults));
+    return;
+  }
+  take_interruptions();
+  const TruthSettings usual;
+  const bool truth_given = !settings.truth.file.empty() ||
+                           settings.truth.tolerance != usual.tolerance ||
+                           !settings.truth.reference_positions.empty() ||
+                           !settings.truth.query_positions.empty() || settings.truth.radius_m;
+  for (const auto& [flag, given] : {std::pair{"matches", !settings.matches.empty()},
+                                    {"truth, tolerance, positions, radius", truth_given},
+                                    {"frames", settings.frames > 0},
+                                    {"threshold-on", settings.threshold_on.has_value()},
+                                    {"json", settings.json}}) {
+    if (given) faults.push_back({flag, "an experiment says it in its file", "leave it out here"});
+  }
+  if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  try {
+    run_experiment(settings.experiment, settings.data, settings.out,
+                   settings.jobs > 0 ? settings.jobs : cores, std::move(faults));
+  } catch (const std::exception&) {
+    if (!interrupted()) throw;
+    throw std::runtime_error("interrupted: what is done is kept, and the same command goes on");
+  }
+  say("the report is {}", (settings.out / "index.html").string());
+}
+
+}  // namespace
+
+Verb eval_verb(ExperimentRunner run_experiment) {
+  const auto settings = std::make_shared<EvalSettings>();
+  Verb verb{"eval",
+            "Compare a match list with the truth, or run a whole experiment",
+            {},
+            [settings, run_experiment = std::move(run_experiment)](Faults faults) {
+              eval(*settings, run_experiment, std::move(faults));
+            }};
+  verb.options.path("matches", settings->matches, "match list (CSV), as `match` writes it");
+  add_truth_options(verb.options, settings->truth);
+  verb.options.add(
+      {"threshold-on", ValueKind::text, "what the curve sweeps: uniqueness or score [uniqueness]",
+       [settings](std::string_view value) { settings->threshold_on = parse_threshold(value); }});
+  verb.options.count(
+      "frames", settings->frames,
+      "queries that have a truth [as the truth file says, or as far as the matches reach]");
+  verb.options.flag("json", settings->json, "print JSON");
+  verb.options.path("experiment", settings->experiment,
+                    "methods x parameters x drives to run, TOML; goes on where it was interrupted");
+  verb.options.path("out", settings->out, "experiment: folder for the report, and what it keeps");
+  verb.options.path("data", settings->data,
+                    "experiment: where its relative paths start [as the file says]");
+  verb.options.count("jobs", settings->jobs, "experiment: runs at once [one a core]");
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "program/drives/drive_length.hpp"
+#include "program/drives/drives.hpp"
+#include "program/drives/map_builder.hpp"
+#include "program/options/matcher_settings.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/outputs.hpp"
+#include "program/process/progress.hpp"
+#include "program/process/say.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/detector.hpp"
+#include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/files/npy_file.hpp"
+#include "seqloop/files/output_file.hpp"
+
+namespace seqloop::program {
+namespace {
+
+// A recording is there whole, so that places can be read once for many frames.
+constexpr std::size_t frames_at_once = 64;
+
+struct MatchSettings {
+  std::filesystem::path reference;
+  std::filesystem::path query;
+  std::filesystem::path out;
+  MatcherSettings matcher;
+};
+
+/// NaN carries no sign here.
+template <class Number>
+std::string precise(Number value) {
+  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
+}
+
+/// A row of the match list.
+std::string csv_row(const FrameReport& report) {
+  const Match& match = *report.match;
+  return fmt::format("{},{},{},{},{},{},{},{},{}\n", *report.frame, match.place,
+                     precise(match.score), precise(match.uniqueness), precise(match.velocity),
+                     match.head, report.work.candidates, report.k, report.work.distances);
+}
+
+void match(const MatchSettings& settings, Faults faults) {
+  take_interruptions();
+  const bool closing = settings.reference.empty();
+  MatcherConfig config =
+      resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  config.frames_at_once = frames_at_once;
+  std::optional<files::Matrix> query;
+  std::optional<files::Matrix> reference;
+  if (settings.query.empty()) {
+    faults.push_back({"query", "not given", "--query Q.npy"});
+  } else {
+    collect(faults, [&] { query = read_descriptors(settings.query, config.difference); });
+  }
+  if (!closing)
+    collect(faults, [&] { reference = read_descriptors(settings.reference, config.difference); });
+  std::unique_ptr<files::OutputFile> out;
+  refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
+  if (settings.out.empty()) {
+    faults.push_back({"out", "not given", "--out M.csv"});
+  } else {
+    collect(faults, [&] { out = std::make_unique<files::OutputFile>(settings.out); });
+  }
+  if (query && reference && query->columns != reference->columns) {
+    faults.push_back({"reference, query",
+                      fmt::format("{} values in a row of one, {} in a row of the other",
+                                  reference->columns, query->columns),
+                      "describe both with the same model and layer"});
+  }
+  if (query && (closing || reference) && validate(config).empty()) {
+    check_length(faults, config, query->rows, reference ? reference->rows : query->rows);
+  }
+  refuse(std::move(faults));
+
+  PlaceMap map(config, {reference ? reference->rows : query->rows, query->columns});
+  if (reference) {
+    files::DescriptorSource drive(std::move(*reference));
+    reference.reset();
+    Progress mapping("mapping", drive.frame_count());
+    fill_map(map, drive, nullptr, config, mapping);
+  }
+  Detector detector(config, map);
+  out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
+  Progress progress("matching", query->rows);
+  std::size_t answered = 0;
+  std::vector<std::span<const float>> frames;
+  std::vector<FrameReport> reports(config.frames_at_once);
+  for (std::size_t row = 0; row < query->rows; row += frames.size()) {
+    stop_if_interrupted();
+    frames.clear();
+    const std::size_t last = std::min(row + config.frames_at_once, query->rows);
+    for (std::size_t next = row; next < last; ++next) frames.push_back(query->row(next));
+    detector.steps(frames, std::span(reports).first(frames.size()));
+    for (const FrameReport& report : std::span(reports).first(frames.size())) {
+      progress.step();
+      if (!report.match) continue;
+      out->write(csv_row(report));
+      ++answered;
+    }
+  }
+  progress.done();
+  out->commit();
+  say("{} of {} frames answered, in {}", answered, query->rows, settings.out.string());
+}
+
+}  // namespace
+
+Verb match_verb() {
+  const auto settings = std::make_shared<MatchSettings>();
+  Verb verb{"match",
+            "Match the descriptors of one drive with those of another, or with its own",
+            {},
+            [settings](Faults faults) { match(*settings, std::move(faults)); }};
+  verb.options.path("reference", settings->reference,
+                    "descriptors of the map, .npy [close loops within the query]");
+  verb.options.path("query", settings->query, "descriptors of the drive, .npy");
+  verb.options.path("out", settings->out, "match list, CSV");
+  add_matcher_options(verb.options, settings->matcher);
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program/drives/map_builder.hpp"
+#include "program/drives/warm_up.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/outputs.hpp"
+#include "program/process/progress.hpp"
+#include "program/process/say.hpp"
+#include "program/run/frame_json.hpp"
+#include "program/run/pictures.hpp"
+#include "program/run/run_report.hpp"
+#include "program/run/run_setup.hpp"
+#include "program/run/run_summary.hpp"
+#include "program/run/source_numbers.hpp"
+#include "program/run/trouble_log.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/linux/real_time.hpp"
+#include "seqloop/linux/steady_clock.hpp"
+#include "seqloop/pipeline.hpp"
+
+namespace seqloop::program {
+namespace {
+
+void write_pictures(const RunSettings& settings, const PictureRecorder& recorder,
+                    const PlaceMap& map) {
+  const auto reopen = [&](const std::filesystem::path& path) {
+    return [&settings, path] { return open_drive(path, "source", settings.drive); };
+  };
+  recorder.write_matrix(settings.pictures, map);
+  const bool pairs = recorder.write_pairs(
+      settings.pictures, reopen(settings.source),
+      reopen(settings.reference.empty() ? settings.source : settings.reference));
+  say("pictures in {}: difference_matrix.png{}", settings.pictures.string(),
+      pairs ? ", matches.png" : "; no matched pictures to show side by side");
+}
+
+ThreadCost since(const live::ThreadCounters& before) {
+  const live::ThreadCounters now = live::thread_counters();
+  return {now.minor_faults - before.minor_faults, now.major_faults - before.major_faults};
+}
+
+/// Throws when the thread may not be scheduled as asked, which was tried before.
+void become_real_time(const RealTimeSettings& settings) {
+  refuse(live::schedule(settings.work_thread(), "loop"));
+  live::touch_stack();
+}
+
+void run(const RunSettings& settings, Faults faults) {
+  take_interruptions();
+  live::SteadyClock clock;
+  RunSetup setup = set_up(settings, std::move(faults), clock);
+  if (!settings.pictures.empty()) make_folder(settings.pictures);
+  if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
+
+  // Start-up: the map, then every path once, before the first frame counts.
+  PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
+  if (setup.reference) {
+    Progress mapping("mapping", setup.reference->frame_count());
+    fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
+    tell_notes(settings.reference, *setup.reference);
+  }
+  Detector detector(setup.config, map);
+  RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
+  OverloadWatch overload(setup.overload);
+  PictureRecorder recorder(setup.config.difference);
+  std::vector<float> query(map.rows().restored_size());
+  Progress progress("running", setup.frame_count(settings.frames));
+  TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
+  become_real_time(settings.real_time);
+  warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
+  start_playing(setup, settings, clock);
+  Pipeline pipeline(setup.source(), setup.describer.get(), detector, clock, setup.descriptor_size);
+  setup.out->heed(interrupted);
+  const live::ThreadCounters warm = live::thread_counters();
+
+  const bool closing = settings.reference.empty();
+  SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  bool map_full = false;
+  bool given_up = false;
+  std::exception_ptr unwritten;
+  while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
+    std::optional<ProcessedFrame> processed = pipeline.process();
+    if (!processed) break;
+    if (!settings.pictures.empty()) {
+      detector.newest_query(query);
+      recorder.add(processed->report, query);
+    }
+    numbers.rename(*processed);
+    const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
+    summary.add(*processed, state);
+    try {
+      setup.out->write(frame_json(*processed, state));
+      setup.out->flush();
+    } catch (const files::IoError&) {
+      unwritten = std::current_exception();
+      break;
+    }
+    trouble.tell(*processed, clock.now());
+    if (processed->report.gate == Gate::no_frame) {
+      given_up = settings.give_up_s > 0.0 &&
+                 trouble.silence(clock.now()) > std::chrono::duration<double>(settings.give_up_s);
+      if (given_up) break;
+      continue;
+    }
+    if (processed->report.map_full && !std::exchange(map_full, true)) {
+      progress.tell(fmt::format("frame {}: the map is full: from here on frames become no places",
+                                processed->report.newest));
+    }
+    if (setup.live && overload.observe(state.missed.any())) {
+      setup.live->take_every(overload.take_every());
+      trouble.tell(overload, setup.overload);
+    }
+    progress.step();
+  }
+  const ThreadCost cost = since(warm);
+  progress.done();
+  tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
+  const bool none_readable =
+      summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
+  if (none_readable && setup.recording) {
+    throw SetupError({settings.source.string(), "none of its frames can be read"});
+  }
+  // The answers first: a driver that hangs may keep the capture thread from ending.
+  if (!unwritten) {
+    setup.out->commit();
+  } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {
+    say("what was written before is in {}", kept.string());
+  }
+  if (setup.live) {
+    setup.live->stop();
+    summary.captured(setup.live->counts());
+  }
+  if (setup.summary) {
+    setup.summary->write(
+        run_report(summary, {settings.source, settings.matcher.method, setup.config, setup.places,
+                             setup.descriptor_size, setup.budget, setup.overload,
+                             overload.episodes(), setup.capture, cost}));
+    setup.summary->commit();
+  }
+  if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
+  say_raw("seqloop: " + summary.text());
+  if (unwritten) std::rethrow_exception(unwritten);
+  if (given_up) {
+    throw std::runtime_error(fmt::format("{}: no frame for {:g} seconds: given up",
+                                         settings.source.string(), settings.give_up_s));
+  }
+}
+
+Pace parse_pace(std::string_view text) {
+  if (text == "max") return Pace::max;
+  if (text == "live") return Pace::live;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither live nor max");
+}
+
+}  // namespace
+
+Verb run_verb() {
+  const auto settings = std::make_shared<RunSettings>();
+  settings->matcher.method = "o-seqcnnslam";
+  Verb verb{
+      "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
+        run(*settings, std::move(faults));
+      }};
+  verb.options.path("source", settings->source,
+                    "camera (/dev/video0), image folder, video file or descriptors (.npy)");
+  verb.options.path("reference", settings->reference,
+                    "drive to localise in [close loops within the source]");
+  verb.options.path("out", settings->out, "one JSON object a frame [standard output]");
+  verb.options.path("summary", settings->summary,
+                    "counts and latency histograms of the run, as JSON [none]");
+  verb.options.path("pictures", settings->pictures,
+                    "folder for the difference matrix and a sheet of matched pairs");
+  verb.options.add({"pace", ValueKind::text,
+                    "live: a recording at its own rate, as a camera would deliver it; max: as fast "
+                    "as it goes [max]",
+                    [settings](std::string_view value) { settings->pace = parse_pace(value); }});
+  verb.options.count("frames", settings->frames, "stop after so many frames [0: all]");
+  verb.options.count("max-places", settings->max_places,
+                     "room in the map [as long as the drive, 20000 where that is not known]");
+  verb.options.number("give-up-s", settings->give_up_s,
+                      "seconds without a frame after which a camera is given up [0: never]");
+  add_loop_options(verb.options, settings->loop);
+  add_real_time_options(verb.options, settings->real_time);
+  add_camera_options(verb.options, settings->camera);
+  add_drive_options(verb.options, settings->drive);
+  add_matcher_options(verb.options, settings->matcher);
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,89 @@
+#include "synthetic/driven_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "seqloop/detail/integer_kernels.hpp"
+#include "seqloop/difference.hpp"
+
+namespace seqloop::program {
+namespace {
+
+// What is seen again differs from the map by as much as it resembles it.
+constexpr float noise = 1.0F;
+
+// More do not change what is standardised by.
+constexpr std::size_t most_learnt = 5000;
+
+PlaceMap made_map(MadePlaces& places, const MatcherConfig& config, const Capacity& capacity,
+                  std::size_t made) {
+  PlaceMap map(config, capacity);
+  std::vector<float> descriptor(capacity.descriptor_size);
+  if (config.standardisation.on) {
+    for (std::size_t i = 0; i < std::min(made, most_learnt); ++i) {
+      places.see(static_cast<double>(i), 0.0F, descriptor);
+      static_cast<void>(map.learn(descriptor));
+    }
+  }
+  do {
+    places.see(static_cast<double>(map.size()), 0.0F, descriptor);
+  } while (map.add(descriptor) && map.size() < made);
+  const std::size_t half = made / 2;
+  for (std::size_t from = half; map.take(map.rows(), from, 0).slot;) {
+    from = from + 1 < made ? from + 1 : half;
+  }
+  return map;
+}
+
+}  // namespace
+
+std::uint64_t DrivenDetector::bytes_needed(const MatcherConfig& config, const Capacity& capacity) {
+  return PlaceMap::bytes_needed(config, capacity) + Detector::bytes_needed(config, capacity);
+}
+
+DrivenDetector::DrivenDetector(const MatcherConfig& config, const Capacity& capacity,
+                               std::size_t made)
+    : stored_bytes_(config.arithmetic == Arithmetic::int8
+                        ? padded_bytes(capacity.descriptor_size)
+                        : padded_size(capacity.descriptor_size) * sizeof(float)),
+      places_(capacity.descriptor_size),
+      robot_(made < capacity.places ? made / 2 : made),
+      map_(made_map(places_, config, capacity, made)),
+      detector_(config, map_),
+      descriptor_(capacity.descriptor_size) {
+  for (std::size_t frame = 0; frame < config.sequence_length; ++frame) {
+    drive();
+    step();
+  }
+  steps_ = distances_ = scanned_ = sketches_ = 0;
+}
+
+void DrivenDetector::drive() {
+  positions_.push_back(robot_.next());
+  places_.see(positions_.back(), noise, descriptor_);
+}
+
+void DrivenDetector::step() noexcept {
+  const FrameReport report = detector_.step(descriptor_);
+  ++steps_;
+  distances_ += report.work.distances;
+  scanned_ += report.work.scanned;
+  sketches_ += report.work.sketches;
+  if (report.gate != Gate::match) return;
+  constexpr double tolerance = 5.0;
+  const double place = static_cast<double>(report.match->place);
+  found_ += std::abs(place - positions_[static_cast<std::size_t>(*report.frame)]) <= tolerance;
+}
+
+std::uint64_t DrivenDetector::bytes_a_step() const noexcept {
+  constexpr std::size_t word = sizeof(std::uint64_t);
+  return (distances_ * stored_bytes_ + scanned_ * DescriptorRows::scanned_words * word +
+          sketches_ * DescriptorRows::close_words * word) /
+         std::max<std::uint64_t>(steps_, 1);
+}
+
+double DrivenDetector::found() const noexcept {
+  return static_cast<double>(found_) / static_cast<double>(std::max<std::uint64_t>(steps_, 1));
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "seqloop/detector.hpp"
+#include "seqloop/matcher_config.hpp"
+#include "seqloop/place_map.hpp"
+#include "synthetic/made_places.hpp"
+
+namespace seqloop::program {
+
+/// A detector that localises a robot in a map of made places, to be timed: the robot moves, is
+/// recognised, and now and then is carried elsewhere.
+class DrivenDetector {
+ public:
+  [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
+                                                  const Capacity& capacity);
+
+  /// Makes the map, and drives until the window is full.
+  /// Work: the map, place by place, in the memory that it stays in.
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity)
+      : DrivenDetector(config, capacity, capacity.places) {}
+
+  /// The same with fewer places that are made, 4 at least. The robot drives through the first half
+  /// of them; what else the map has room for are copies of the other half, which never look like
+  /// what the robot sees.
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity, std::size_t made);
+
+  /// Drives to where the next frame is, and describes what is there.
+  void drive();
+  /// Takes that frame. Allocates: never.
+  void step() noexcept;
+
+  /// Of descriptors and sketches, that a step has read on average.
+  [[nodiscard]] std::uint64_t bytes_a_step() const noexcept;
+  /// Of the frames, the share that was matched with a place within five of where they were.
+  [[nodiscard]] double found() const noexcept;
+
+ private:
+  std::size_t stored_bytes_;
+  MadePlaces places_;
+  MadeRobot robot_;
+  PlaceMap map_;
+  Detector detector_;
+  std::vector<float> descriptor_;
+  std::vector<double> positions_;  // by frame
+  std::uint64_t steps_ = 0;        // with a full window; what they did:
+  std::uint64_t distances_ = 0;
+  std::uint64_t scanned_ = 0;
+  std::uint64_t sketches_ = 0;
+  std::size_t found_ = 0;
+};
+
+}  // namespace seqloop::program
