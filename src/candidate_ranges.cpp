@@ -9,7 +9,7 @@ namespace seqloop {
 namespace {
 
 // Algorithm 5: the scene counts as steady between these change degrees, and K follows the largest
-// of so many steady frames' needs.
+// of this many steady frames' needs.
 constexpr double steady_from = 0.9;
 constexpr double steady_to = 1.1;
 constexpr std::size_t frames_to_record = 10;

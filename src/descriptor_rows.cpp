@@ -26,8 +26,8 @@ std::size_t words_of(const DescriptorForm& form) {
   return form.relocalising ? DescriptorRows::close_words : 0;
 }
 
-// The same of several queries at once: of so many rows, what is not near any more when the queries
-// go on at the other end of their ring is still in the second-level cache.
+// The same of several queries at once: of this many rows, what is not near any more when the
+// queries go on at the other end of their ring is still in the second-level cache.
 constexpr std::size_t block_abreast = 96;
 
 /// Calls `work(begin, count)` for pieces of at most `most`.

@@ -83,8 +83,8 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();
   const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
   if (relocalises(config)) {
-    const std::size_t rows = std::min(AdmittedRows::most_rows(config), capacity.places);
-    const PromisingRows::Looks looks = PromisingRows::most_looks(config, capacity.places);
+    const std::size_t rows = std::min(CandidateBudget::most_rows(config), capacity.places);
+    const CandidateProposals::Looks looks = CandidateProposals::most_looks(config, capacity.places);
     return {rows, distances_a_frame(config) + change, rows * lines, looks.scanned, looks.closely};
   }
   // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
@@ -122,8 +122,8 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       slices_(arena, config, history(config), capacity),
       search_(arena, trajectories_, config, capacity.places),
       ranges_(arena, config),
-      promising_(arena, config, capacity.places),
-      admitted_(arena, config),
+      proposals_(arena, config, capacity.places),
+      budget_(arena, config),
       decision_(arena, config),
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
@@ -164,7 +164,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   const std::size_t rows =
       rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
   if (relocalises(config_)) {
-    const PromisingRows::Looks looks = promising_.look(slices_, *map_, rows, window_began_);
+    const CandidateProposals::Looks looks = proposals_.look(slices_, *map_, rows, window_began_);
     report.work.scanned = looks.scanned;
     report.work.sketches = looks.closely;
   }
@@ -173,16 +173,16 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   const bool whole = report.newest >= window_began_ + config_.sequence_length;
   if (!whole && !relocalises(config_)) return report;
 
-  report.full_search = admit_candidates(newest, rows);
-  report.work.distances += admitted_.distances();
+  report.full_search = choose_candidates(newest, rows);
+  report.work.distances += budget_.distances();
   if (!whole) return report;
-  for (const CandidateRun run : admitted_.runs()) {
+  for (const CandidateRun run : budget_.runs()) {
     report.work.line_sums +=
         search_.score(slices_, map_->order(), report.newest - config_.sequence_length, run, rows);
   }
-  const bool keep_rival = report.full_search || relocalises(config_);
-  const auto best =
-      decision_.decide(search_.scores(), admitted_.runs(), keep_rival, promising_.promises(), rows);
+  const bool keep_runner_up = report.full_search || relocalises(config_);
+  const auto best = decision_.decide(search_.scores(), budget_.runs(), keep_runner_up,
+                                     proposals_.proposals(), rows);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
 
@@ -192,7 +192,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
     change = change_degree_.advance(slices_, *report.frame);
     report.work.distances += change_degree_.distances();
   }
-  ranges_.update(search_.scores(), admitted_.runs(), best ? std::optional(best->row) : std::nullopt,
+  ranges_.update(search_.scores(), budget_.runs(), best ? std::optional(best->row) : std::nullopt,
                  change);
   return report;
 }
@@ -208,7 +208,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
   ranges_.skip(frames);
-  promising_.skip(frames);
+  proposals_.skip(frames);
   decision_.skip(frames);
   change_degree_ = {};
 }
@@ -216,7 +216,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
 void Detector::restart() noexcept {
   window_began_ = slices_.frames();
   ranges_.restart();
-  promising_.restart();
+  proposals_.restart();
   decision_.restart();
   change_degree_ = {};
 }
@@ -250,7 +250,7 @@ bool Detector::become_place() noexcept {
   if (taken.removed) {
     slices_.forget(*taken.slot);
     ranges_.removed(*taken.removed);
-    promising_.removed(*taken.removed);
+    proposals_.removed(*taken.removed);
     decision_.removed(*taken.removed);
   }
   return taken.slot.has_value();
@@ -295,16 +295,16 @@ std::size_t Detector::fill_columns(std::uint64_t newest) noexcept {
 
 /// Decides which rows the centre frame is compared with, and computes their differences.
 /// @return whether they are all
-bool Detector::admit_candidates(std::uint64_t newest, std::size_t rows) noexcept {
-  const AdmittedRows::Window window{&slices_,      map_,       &trajectories_,
-                                    window_began_, newest + 1, rows};
+bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcept {
+  const CandidateBudget::Window window{&slices_,      map_,       &trajectories_,
+                                       window_began_, newest + 1, rows};
   const std::span<const CandidateRun> ranges = ranges_.choose(rows);
-  const std::span<const PromisingRows::Promise> promises = promising_.promises();
-  admitted_.clear();
+  const std::span<const CandidateProposals::Proposal> proposals = proposals_.proposals();
+  budget_.clear();
   // The best of both first, so that neither starves.
-  for (std::size_t i = 0; i < std::max(ranges.size(), promises.size()); ++i) {
-    if (i < ranges.size()) admitted_.admit(window, ranges[i]);
-    if (i < promises.size()) admitted_.admit(window, ranges_.around(promises[i].centre, rows));
+  for (std::size_t i = 0; i < std::max(ranges.size(), proposals.size()); ++i) {
+    if (i < ranges.size()) budget_.add(window, ranges[i]);
+    if (i < proposals.size()) budget_.add(window, ranges_.around(proposals[i].centre, rows));
   }
   return ranges_.full_search();
 }

@@ -31,8 +31,8 @@ Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs
 }  // namespace
 
 std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
-                                            std::span<const CandidateRun> runs, bool keep_rival,
-                                            std::span<const PromisingRows::Promise> promises,
+                                            std::span<const CandidateRun> runs, bool keep_runner_up,
+                                            std::span<const CandidateProposals::Proposal> proposals,
                                             std::size_t rows) noexcept {
   past_.next();
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
@@ -40,26 +40,26 @@ std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
   const auto outside = [&](std::size_t row) {
     return row + half_window_ < best.row || row > best.row + half_window_;
   };
-  Lowest rival = lowest(scores, runs, outside);
-  for (const PromisingRows::Promise& promise : promises) {
+  Lowest runner_up = lowest(scores, runs, outside);
+  for (const CandidateProposals::Proposal& proposal : proposals) {
     const bool scored = std::ranges::any_of(runs, [&](CandidateRun run) {
-      return run.first <= promise.centre && promise.centre < run.last;
+      return run.first <= proposal.centre && proposal.centre < run.last;
     });
-    if (scored || !outside(promise.centre)) continue;
-    ++rival.scored;
-    if (promise.difference >= rival.score) continue;
-    rival.row = promise.centre;
-    rival.score = promise.difference;
+    if (scored || !outside(proposal.centre)) continue;
+    ++runner_up.scored;
+    if (proposal.difference >= runner_up.score) continue;
+    runner_up.row = proposal.centre;
+    runner_up.score = proposal.difference;
   }
   const std::optional<double> past = past_.lowest(best.row, half_window_, rows);
   past_.remember({best.row, best.score});
-  if (rival.scored > 0) past_.remember({rival.row, rival.score});
-  if (past) rival = {rival.row, std::min(rival.score, *past), rival.scored + 1};
-  const std::optional<double> rival_score =
-      rival.scored > 0 ? std::optional(rival.score) : last_rival_;
-  if (keep_rival) last_rival_ = rival_score;
+  if (runner_up.scored > 0) past_.remember({runner_up.row, runner_up.score});
+  if (past) runner_up = {runner_up.row, std::min(runner_up.score, *past), runner_up.scored + 1};
+  const std::optional<double> runner_up_score =
+      runner_up.scored > 0 ? std::optional(runner_up.score) : last_runner_up_;
+  if (keep_runner_up) last_runner_up_ = runner_up_score;
   const double uniqueness =
-      rival_score ? best.score / *rival_score : std::numeric_limits<double>::quiet_NaN();
+      runner_up_score ? best.score / *runner_up_score : std::numeric_limits<double>::quiet_NaN();
   return BestRow{best.row, best.score, uniqueness, best.scored};
 }
 

@@ -97,7 +97,7 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
   if (relocalises(config)) {
-    check_range(faults, "relocalising.slice", config.relocalising.slice, 2, many);
+    check_range(faults, "relocalising.rows_scanned", config.relocalising.rows_scanned, 2, many);
     const std::size_t least = distances_of_one_range(config);
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
       faults.push_back({"relocalising.distances",

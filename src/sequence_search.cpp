@@ -12,7 +12,7 @@ namespace {
 // Rows scored side by side: at usual sequence lengths their sums stay in the second-level cache.
 constexpr std::size_t block_rows = 128;
 
-// Sums are gone on with in whole vectors of so many, the widest that any processor has.
+// Sums are continued in whole vectors of this many, the widest that any processor has.
 constexpr std::size_t vector_lanes = 16;
 
 std::size_t whole_vectors(std::size_t count) {

@@ -148,7 +148,7 @@ def kidnapped_order(dice: random.Random, pieces: int) -> list[int]:
 
 
 def kidnapped_on_the_street(tools: Tools, folder: pathlib.Path) -> None:
-    """The made street in summer; in winter the camera is put elsewhere after each piece."""
+    """The synthetic street in summer; in winter the camera is put elsewhere after each piece."""
     if not all((folder / name).exists() for name in ("reference.npy", "whole_query.npy")):
         call([tools.street, "--keep", "--quiet", "--drives", "localise", "--frames", STREET_FRAMES,
               "--size", "160x90", "--format", "avi", "--seed", STREET_SEED,
@@ -179,7 +179,7 @@ class Drive:
     needs: tuple[str, ...] = ()  # below the data folder
 
     @property
-    def made_street(self) -> bool:
+    def synthetic_street(self) -> bool:
         return self.make is kidnapped_on_the_street
 
 
@@ -187,10 +187,10 @@ GARDENS, NORDLAND = (GARDENS_DAY, GARDENS_NIGHT), (SUMMER, WINTER)
 DRIVES = (
     Drive("a-gardens", "Gardens Point, day then night", True, 2, (40, 20),
           one_after_the_other(*GARDENS, 200), GARDENS),
-    Drive("b-made", "made walk, passed twice", True, 2, (20,), walk_twice),
+    Drive("b-made", "synthetic walk, passed twice", True, 2, (20,), walk_twice),
     Drive("b-nordland", "Nordland, 1,200 of summer then of winter", True, 1, (20,),
           one_after_the_other(*NORDLAND, 1200), NORDLAND),
-    Drive("c-street", f"made street, {STREET_PIECES - 1} kidnappings", False, 10, (40, 80),
+    Drive("c-street", f"synthetic street, {STREET_PIECES - 1} kidnappings", False, 10, (40, 80),
           kidnapped_on_the_street),
     Drive("d-nordland", "Nordland, summer → winter", False, 1, (20,), real(*NORDLAND), NORDLAND),
     Drive("d-pool5", "the same, pool5", False, 1, (80,), real(*NORDLAND, *POOL5),

@@ -47,7 +47,7 @@ class CaptureDevice {
   CaptureDevice& operator=(CaptureDevice&&) = delete;
   virtual ~CaptureDevice() = default;
 
-  /// Captures that may be out at a time, not given back: whoever holds them keeps at most so many.
+  /// The most captures that may be held at a time without being given back.
   static constexpr std::uint32_t most_out = 3;
 
   /// Waits for the next frame, not much longer than the device's time-out.

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "seqloop/detail/admitted_rows.hpp"
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_budget.hpp"
+#include "seqloop/detail/candidate_proposals.hpp"
 #include "seqloop/detail/candidate_ranges.hpp"
 #include "seqloop/detail/change_degree.hpp"
 #include "seqloop/detail/difference_slices.hpp"
 #include "seqloop/detail/loop_decision.hpp"
-#include "seqloop/detail/promising_rows.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/detail/sequence_search.hpp"
 #include "seqloop/detail/trajectories.hpp"
@@ -25,9 +25,9 @@ namespace seqloop {
 /// Answers, frame by frame, whether the robot has been here before. One step for all methods:
 /// SeqCNNSLAM, A-SeqCNNSLAM and O-SeqCNNSLAM differ in which rows of the map are candidates,
 /// SeqSLAM in how descriptors are compared and that differences are enhanced. Where A- and
-/// O-SeqCNNSLAM relocalise, candidates come from the last frame's best rows and from a look at a
-/// slice of the map, the most promising first, until the frame's distances are spent: no frame's
-/// work grows with the map.
+/// O-SeqCNNSLAM relocalise, candidates come from the last frame's best rows and from a scan of a
+/// part of the map, the best first, until the frame's budget of distances is spent: no frame's work
+/// grows with the map.
 class Detector {
  public:
   /// Bytes of every buffer beside the map's.
@@ -54,11 +54,10 @@ class Detector {
   ~Detector() = default;
 
   /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
-  /// @param descriptor [D] unit L2, or finite where the difference is mean absolute. Empty, of
-  ///   another size, not so, or blank where `blank_is_unreadable`: the frame could not be read. It
-  ///   counts,
-  ///   the scene is taken to stand still, and the gate is `frame_error`: the answer that was due,
-  ///   for the centre frame, is not given.
+  /// @param descriptor [D] unit L2, or finite where the difference is mean absolute. If it is
+  ///   empty, of another size, neither of these, or blank where `blank_is_unreadable`, the frame
+  ///   could not be read: it counts as one at which the scene stood still, the gate is
+  ///   `frame_error`, and the answer that was due, for the centre frame, is not given.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
@@ -103,7 +102,7 @@ class Detector {
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
   [[nodiscard]] std::size_t complete_rows() const noexcept;
   [[nodiscard]] std::size_t fill_columns(std::uint64_t newest) noexcept;
-  [[nodiscard]] bool admit_candidates(std::uint64_t newest, std::size_t rows) noexcept;
+  [[nodiscard]] bool choose_candidates(std::uint64_t newest, std::size_t rows) noexcept;
   void decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept;
 
   ArenaMemory memory_;
@@ -115,8 +114,8 @@ class Detector {
   DifferenceSlices slices_;
   SequenceSearch search_;
   CandidateRanges ranges_;
-  PromisingRows promising_;
-  AdmittedRows admitted_;
+  CandidateProposals proposals_;
+  CandidateBudget budget_;
   ChangeDegree change_degree_;
   LoopDecision decision_;
   std::span<float> standardised_;  // [D]

@@ -29,8 +29,8 @@ struct Match {
   /// those that a full map forgets too.
   std::size_t place = 0;
   float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
-  /// Score by the best rival's score: 0 .. 1; above 1 or infinite when the rival of the last full
-  /// search had to stand in and is better; NaN where not defined.
+  /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
+  /// full search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
   double velocity = 0.0;  ///< rows a frame; NaN for single frames
   std::size_t head = 0;   ///< the place at the newest column

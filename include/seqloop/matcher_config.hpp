@@ -48,9 +48,9 @@ struct Relocalising {
 
   /// Off: full searches, as published. On: no frame costs more than any other.
   bool on = true;
-  /// Rows of the map that a frame looks at, by sketches, one slice of the map after the other;
-  /// >= 1.
-  std::size_t slice = 4096;
+  /// Rows of the map that a frame scans by their sketches; the next frame goes on where it ended;
+  /// >= 2.
+  std::size_t rows_scanned = 4096;
   /// The most descriptor distances that the candidates of a frame may cost; 0: `distances_a_frame`
   /// chooses; otherwise at least what keeping up with one range takes.
   std::size_t distances = 0;
@@ -62,8 +62,8 @@ struct Standardisation {
 
   /// Divide each feature by its deviation around its running mean. Off: descriptors as they come.
   bool on = true;
-  /// How many frames that count for which a drive starts from: the map's statistics, or, without a
-  /// map, the first frame's; >= 1.
+  /// The weight, in frames, of what a drive starts from: the map's statistics or, without a map,
+  /// the first frame's; >= 1.
   std::size_t prior_frames = 20;
   /// A frame never weighs less than 1/horizon, so that the statistics follow the day; >= 1, frames.
   std::size_t horizon = 100;
@@ -80,7 +80,7 @@ struct MatcherConfig {
       20;             ///< ds: a window holds ds + 1 columns; 0 .. 2,000 frames, 0: single frames
   double vmin = 0.8;  ///< slowest trajectory, rows a frame; 0 .. vmax
   double vmax = 1.2;  ///< fastest trajectory, rows a frame; vmin .. 10
-  std::size_t rwindow = 10;  ///< rows around the best that do not count as rivals; >= 0
+  std::size_t rwindow = 10;  ///< rows around the best that cannot be the runner-up; >= 0
   /// SeqSLAM's local contrast enhancement: each difference becomes its deviation from those of the
   /// rwindow rows around it. Needs rwindow >= 2; closing loops, exclude above rwindow / 2.
   bool enhance = false;
@@ -110,7 +110,7 @@ struct Capacity {
   std::size_t descriptor_size = 0;  ///< values in a descriptor, D; 1 .. 2^22
 };
 
-/// Whether frames have candidate ranges and a slice of the map to look at, and never all rows.
+/// Whether a frame has candidate ranges and a part of the map to scan, and never all rows.
 [[nodiscard]] bool relocalises(const MatcherConfig& config) noexcept;
 
 /// The most descriptor distances that the candidates of one frame may cost where the detector

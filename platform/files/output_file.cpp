@@ -160,9 +160,9 @@ std::filesystem::path OutputFile::keep_incomplete() noexcept {
 }
 
 void OutputFile::wait_for_reader() const {
-  constexpr int slice_ms = 50;
+  constexpr int time_step_ms = 50;
   pollfd poll{descriptor_, POLLOUT, 0};
-  while (::poll(&poll, 1, slice_ms) <= 0) {
+  while (::poll(&poll, 1, time_step_ms) <= 0) {
     if (give_up_()) throw IoError(name(), "cannot be written: nobody reads it");
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr Nanoseconds slice = Milliseconds(50);
+constexpr Nanoseconds time_step = Milliseconds(50);
 constexpr Nanoseconds short_pause =
     Milliseconds(5);  // where a driver says that there is something, and lies
 constexpr Nanoseconds busy_pause = Milliseconds(100);  // until another program is asked for again
@@ -137,7 +137,7 @@ void Camera::trouble(std::string_view doing, int error) noexcept {
 }
 
 void Camera::pause(Nanoseconds until) noexcept {
-  clock_.sleep_until(std::min(until, clock_.now() + slice));
+  clock_.sleep_until(std::min(until, clock_.now() + time_step));
 }
 
 void Camera::next(Captured& captured, const std::atomic<bool>& stop) noexcept {
@@ -159,13 +159,13 @@ void Camera::next(Captured& captured, const std::atomic<bool>& stop) noexcept {
   }
 }
 
-/// Waits for a slice. @return whether `captured` is to be handed over
+/// Waits for a time step. @return whether `captured` is to be handed over
 bool Camera::capture(Captured& captured, Nanoseconds deadline) noexcept {
   if (const int error = stream_->queue_idle(); error != 0 && error != EINTR && error != EAGAIN) {
     trouble("lending a buffer", error);
     return false;
   }
-  const Nanoseconds left = std::min(deadline - clock_.now(), slice);
+  const Nanoseconds left = std::min(deadline - clock_.now(), time_step);
   const auto milliseconds = std::chrono::ceil<Milliseconds>(left).count();
   const SystemCalls::Polled polled =
       stream_->wait(static_cast<int>(std::max<std::int64_t>(milliseconds, 1)));

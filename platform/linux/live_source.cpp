@@ -9,7 +9,7 @@
 namespace seqloop::live {
 namespace {
 
-constexpr Nanoseconds slice = std::chrono::milliseconds(50);  // between two looks at `stop`
+constexpr Nanoseconds time_step = std::chrono::milliseconds(50);  // between two looks at `stop`
 
 bool is_frame(const Captured& captured) noexcept {
   return captured.what == Capture::frame || captured.what == Capture::bad_frame;
@@ -148,7 +148,7 @@ Grab LiveSource::grab(Frame& frame) noexcept {
       }
     }
     if (settings_.stop != nullptr && settings_.stop()) return Grab::end;
-    wake_up_.wait(slice);
+    wake_up_.wait(time_step);
     const Nanoseconds now = clock_->now();
     if (const std::uint64_t newest = rounds_.load(std::memory_order_relaxed); newest != rounds) {
       rounds = newest;

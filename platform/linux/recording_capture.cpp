@@ -7,7 +7,7 @@
 namespace seqloop::live {
 namespace {
 
-constexpr Nanoseconds slice = std::chrono::milliseconds(50);
+constexpr Nanoseconds time_step = std::chrono::milliseconds(50);
 
 std::size_t pixel_bytes(PixelFormat format) noexcept { return format == PixelFormat::bgr8 ? 3 : 1; }
 
@@ -23,8 +23,8 @@ void RecordingCapture::next(Captured& captured, const std::atomic<bool>& /*stop*
         std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(ahead_->time_s));
     if (!start_) start_ = now - time;
     ahead_->stamp = *start_ + time;
-    // Never longer than a slice, whatever the stop says.
-    clock_->sleep_until(std::min(ahead_->stamp, now + slice));
+    // Never longer than a time step, whatever the stop says.
+    clock_->sleep_until(std::min(ahead_->stamp, now + time_step));
     ahead_->arrived = clock_->now();
     if (ahead_->arrived < ahead_->stamp) return;
     if (passes_over()) return;

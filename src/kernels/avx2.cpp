@@ -1,5 +1,5 @@
+#include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
-#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -26,6 +26,6 @@ void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
 }
 
 constinit const IntegerKernels avx2 =
-    made_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
+    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
 
 }  // namespace seqloop::kernels

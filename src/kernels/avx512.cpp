@@ -1,5 +1,5 @@
+#include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
-#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -27,6 +27,6 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
 }
 
 constinit const IntegerKernels avx512 =
-    made_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512);
+    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512);
 
 }  // namespace seqloop::kernels

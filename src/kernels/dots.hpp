@@ -8,8 +8,8 @@
 //   Sum add(Sum, Row, Query)
 //   totals(sums of sums_together, out), modulo 2^32
 //   uint32 row_offset: what `row` makes every value larger by; where it does, Row one()
-//   block_queries, block_rows: so many queries with so many rows are as many sums side by side as
-//   there are registers; column_rows: the same of one query with so many rows }
+//   block_queries, block_rows: queries by rows, as many sums side by side as
+//   there are registers; column_rows: the same, rows of one query }
 namespace seqloop::kernels {
 
 /// Bytes of queries that stay in the nearest cache while rows pass by.
@@ -142,7 +142,7 @@ template <class Products, std::size_t queries, std::size_t rows>
   }
 }
 
-/// The same for any number of rows: so many side by side, then half as many, and so on.
+/// The same for any number of rows: `column_rows` side by side, then half as many, and so on.
 template <class Products, std::size_t queries, std::size_t rows>
 void add_rows(const DotTile& tile, std::size_t count) noexcept {
   std::size_t row = 0;

@@ -3,7 +3,7 @@
 #include "kernels/blocks.hpp"
 
 // Differences: struct {
-//   Sum: a register; Sum zero(); Sum add<words>(Sum, a, b): bits that differ in so many words, a
+//   Sum: a register; Sum zero(); Sum add<words>(Sum, a, b): bits that differ in `words` words, a
 //   block or half of one; totals(sums of sums_together, out) }
 namespace seqloop::kernels {
 

@@ -1,5 +1,5 @@
+#include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
-#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -26,6 +26,6 @@ void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
 }
 
 constinit const IntegerKernels neon =
-    made_of<HighwayProducts, HighwayDifferences, HighwayLanes>("neon", &has_neon);
+    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("neon", &has_neon);
 
 }  // namespace seqloop::kernels

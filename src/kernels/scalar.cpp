@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "kernels/made_of.hpp"
+#include "kernels/composed_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -50,6 +50,6 @@ bool always() noexcept { return true; }
 }  // namespace
 
 constinit const IntegerKernels scalar =
-    made_of<Products, Differences, OneLane<Products>>("scalar", &always);
+    composed_of<Products, Differences, OneLane<Products>>("scalar", &always);
 
 }  // namespace seqloop::kernels

@@ -1,10 +1,10 @@
+#include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
-#include "kernels/made_of.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
 
 constinit const IntegerKernels sse4 =
-    made_of<HighwayProducts, HighwayDifferences, HighwayLanes>("sse4", &has_sse4);
+    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("sse4", &has_sse4);
 
 }  // namespace seqloop::kernels

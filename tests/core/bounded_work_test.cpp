@@ -53,7 +53,7 @@ Drive any_drive(Chance& chance) {
   config.full_map = chance.one_of({FullMap::refuse, FullMap::forget_oldest, FullMap::thin});
   config.enhance = chance.one_in(4) && config.full_map == FullMap::refuse && config.rwindow > 1 &&
                    config.exclude > config.rwindow / 2;
-  config.relocalising.slice = chance.one_of<std::size_t>({2, 7, 64, 4096});
+  config.relocalising.rows_scanned = chance.one_of<std::size_t>({2, 7, 64, 4096});
   if (chance.one_in(2)) {
     const auto spread = static_cast<std::size_t>(
         std::ceil((vmax - vmin) * static_cast<double>(config.sequence_length)));
@@ -74,9 +74,9 @@ std::string text(const Drive& drive, std::uint32_t seed) {
       << static_cast<int>(c.use) << ", arithmetic " << static_cast<int>(c.arithmetic) << ", full "
       << static_cast<int>(c.full_map) << ", ds " << c.sequence_length << ", v " << c.vmin << ".."
       << c.vmax << ", num " << c.num << ", exclude " << c.exclude << ", enhance " << c.enhance
-      << ", rwindow " << c.rwindow << ", slice " << c.relocalising.slice << ", distances "
-      << c.relocalising.distances << ", standardised " << c.standardisation.on << ", places "
-      << drive.places;
+      << ", rwindow " << c.rwindow << ", rows scanned " << c.relocalising.rows_scanned
+      << ", distances " << c.relocalising.distances << ", standardised " << c.standardisation.on
+      << ", places " << drive.places;
   return out.str();
 }
 
@@ -180,10 +180,10 @@ TEST(BoundedWork, NoFrameCostsMuchMoreThanAnother) {
   const oracle::Vectors reference = oracle::drive(7, 3'000, 32, 0.2F);
   const oracle::Vectors query = oracle::drive(7, 3'000, 32, 0.5F);
   for (const Candidates candidates : {Candidates::ranges, Candidates::adaptive}) {
-    for (const std::size_t slice : {500U, 4096U}) {
+    for (const std::size_t scanned : {500U, 4096U}) {
       MatcherConfig config;
       config.candidates = candidates;
-      config.relocalising.slice = slice;
+      config.relocalising.rows_scanned = scanned;
       PlaceMap map = map_of(reference, config);
       Detector detector(config, map);
       std::array<std::vector<std::size_t>, 4> counts;
@@ -197,8 +197,8 @@ TEST(BoundedWork, NoFrameCostsMuchMoreThanAnother) {
       }
       for (const std::vector<std::size_t>& count : counts) {
         const std::size_t most = *std::ranges::max_element(count);
-        std::printf("method %d, slice %zu: median %zu, most %zu\n", static_cast<int>(candidates),
-                    slice, median(count), most);
+        std::printf("method %d, rows scanned %zu: median %zu, most %zu\n",
+                    static_cast<int>(candidates), scanned, median(count), most);
         EXPECT_LE(most, 3 * median(count));
       }
     }

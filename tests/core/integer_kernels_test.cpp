@@ -297,12 +297,12 @@ struct Lowest {
 };
 
 /// Lines of every count of changes, up and down, as far as the sums reach.
-struct MadeLines {
+struct SyntheticLines {
   static constexpr std::uint32_t furthest = 40;
   std::vector<LineThroughSums> lines;
   std::vector<std::uint32_t> changes;
 
-  explicit MadeLines(std::mt19937& random) {
+  explicit SyntheticLines(std::mt19937& random) {
     std::uniform_int_distribution<std::uint32_t> offsets(0, furthest);
     for (const std::uint32_t count : {0U, 1U, 2U, 21U, 0U, 5U}) {
       const auto first = static_cast<std::uint32_t>(changes.size());
@@ -314,13 +314,13 @@ struct MadeLines {
   }
 };
 
-void keep_lower(const std::vector<std::uint32_t>& sums, const MadeLines& made, std::uint32_t number,
-                Lowest& lowest) {
-  for (const LineThroughSums& line : made.lines) {
+void keep_lower(const std::vector<std::uint32_t>& sums, const SyntheticLines& synthetic,
+                std::uint32_t number, Lowest& lowest) {
+  for (const LineThroughSums& line : synthetic.lines) {
     for (std::size_t column = 0; column + 1 < lowest.best.size(); ++column) {
       std::uint32_t sum = sums[line.end + column];
       for (std::uint32_t c = line.first_change; c < line.last_change; ++c) {
-        const std::uint32_t apart = sums[made.changes[c] + column];
+        const std::uint32_t apart = sums[synthetic.changes[c] + column];
         sum = line.rises ? sum + apart : sum - apart;
       }
       if (sum >= lowest.best[column]) continue;
@@ -336,17 +336,18 @@ TEST_P(Variant, LowestLinesEqualTheDefinitionForEveryCountAndReadNothingElse) {
   for (std::size_t count = 0; count < 150; ++count) {
     // Sums that wrap around, and ties.
     std::uniform_int_distribution<std::uint32_t> values(0, count % 2 == 0 ? 3U : 0xFFFFFFFFU);
-    std::vector<std::uint32_t> sums(count + MadeLines::furthest);
+    std::vector<std::uint32_t> sums(count + SyntheticLines::furthest);
     for (std::uint32_t& sum : sums) sum = 0xFFFFFFFEU + values(random);
     Lowest right{std::vector<std::uint32_t>(count + 1, 0xFFFFFFFFU),
                  std::vector<std::uint32_t>(count + 1, 99)};
     Lowest kept = right;
     const Guarded guarded(sums);
     for (std::uint32_t go = 0; go < 3; ++go) {
-      const MadeLines made(random);
-      keep_lower(sums, made, 10 * go, right);
-      kernels_.lowest_lines(guarded.data(), made.changes.data(), made.lines.data(),
-                            made.lines.size(), 10 * go, count, kept.best.data(), kept.lines.data());
+      const SyntheticLines synthetic(random);
+      keep_lower(sums, synthetic, 10 * go, right);
+      kernels_.lowest_lines(guarded.data(), synthetic.changes.data(), synthetic.lines.data(),
+                            synthetic.lines.size(), 10 * go, count, kept.best.data(),
+                            kept.lines.data());
       ASSERT_EQ(kept, right) << count << ' ' << go;
     }
     EXPECT_EQ(kept.lines.back(), 99U) << "nothing is written behind";

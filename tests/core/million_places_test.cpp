@@ -50,8 +50,8 @@ class Walk {
   std::vector<float> place_ = std::vector<float>(descriptor_size, 0.0F);
 };
 
-struct MadeMap {
-  MadeMap() {
+struct SyntheticMap {
+  SyntheticMap() {
     Walk walk;
     for (std::size_t row = 0; row < places; ++row) {
       const std::vector<float> place = walk.next();
@@ -78,26 +78,26 @@ struct MadeMap {
 
 TEST(MillionPlaces, TakeWhatThePlanSaysAndNoStepMoreThanInASmallMap) {
   if (!AllocationGuard::works()) GTEST_SKIP() << "a sanitizer's heap cannot be counted";
-  const MatcherConfig config = MadeMap::config();
+  const MatcherConfig config = SyntheticMap::config();
   const Capacity capacity{places, descriptor_size};
   const auto planned = static_cast<double>(PlaceMap::bytes_needed(config, capacity) +
                                            Detector::bytes_needed(config, capacity));
   const long faults_before_all = page_faults();
-  MadeMap made;
-  ASSERT_TRUE(made.ok);
+  SyntheticMap drive;
+  ASSERT_TRUE(drive.ok);
   EXPECT_GT(page_faults(), faults_before_all) << "what counts them can count";
-  Detector detector(config, made.map);
-  const double built = resident_bytes() - made.before;
+  Detector detector(config, drive.map);
+  const double built = resident_bytes() - drive.before;
 
   const Work most = Detector::most_work(config, capacity);
   EXPECT_EQ(most, Detector::most_work(config, {20'000, descriptor_size}));
   std::array<std::size_t, stretches.size()> found{};
   std::size_t allocations = 0;
   long faults = 0;
-  for (std::size_t frame = 0; frame < made.query.size(); ++frame) {
+  for (std::size_t frame = 0; frame < drive.query.size(); ++frame) {
     const long faults_before = page_faults();
     const AllocationGuard guard;
-    const FrameReport report = detector.step(made.query[frame]);
+    const FrameReport report = detector.step(drive.query[frame]);
     allocations += guard.count();
     faults += page_faults() - faults_before;
     EXPECT_LE(report.work.candidates, most.candidates) << frame;
@@ -109,18 +109,18 @@ TEST(MillionPlaces, TakeWhatThePlanSaysAndNoStepMoreThanInASmallMap) {
     const std::size_t right = stretches[centre / frames] + centre % frames;
     found[centre / frames] += report.match->place == right;
   }
-  const double stepped = resident_bytes() - made.before;
+  const double stepped = resident_bytes() - drive.before;
   std::printf(
       "seed %u: planned %.0f bytes, grown by %.0f when built, %.0f after %zu steps; faults %ld, "
       "allocations %zu; right %zu and %zu of %zu\n",
-      seed, planned, built, stepped, made.query.size(), faults, allocations, found[0], found[1],
+      seed, planned, built, stepped, drive.query.size(), faults, allocations, found[0], found[1],
       frames);
   EXPECT_NEAR(stepped, planned, 0.05 * planned);
   EXPECT_EQ(allocations, 0U);
   // The kernel takes a page away now and then; a step that takes memory would do so each time.
   EXPECT_LT(faults, static_cast<long>(frames / 100));
-  // All slices of the map have been looked at once after so many frames.
-  const std::size_t round = places / config.relocalising.slice + 1;
+  // The whole map has been scanned once after this many frames.
+  const std::size_t round = places / config.relocalising.rows_scanned + 1;
   for (const std::size_t right : found) {
     EXPECT_GE(right, frames - round - 3 * config.sequence_length);
   }

@@ -164,20 +164,20 @@ class Matcher {
                      [&](Int a, Int b) { return scored[a].score < scored[b].score; });
     const Int best = sorted.front();
 
-    double rival = none;
+    double runner_up = none;
     for (const auto& [q, line] : scored) {
       if (2 * std::abs(q - best) > static_cast<Int>(config_.rwindow)) {
-        rival = std::min(rival, line.score);
+        runner_up = std::min(runner_up, line.score);
       }
     }
-    if (rival == none) rival = last_full_rival_;
-    if (full) last_full_rival_ = rival;
+    if (runner_up == none) runner_up = last_full_runner_up_;
+    if (full) last_full_runner_up_ = runner_up;
 
     const Line line = scored[best];
     const Answer answer{n,
                         best,
                         line.score,
-                        rival == none ? std::nan("") : line.score / rival,
+                        runner_up == none ? std::nan("") : line.score / runner_up,
                         static_cast<double>(line.m) / static_cast<double>(ds_),
                         best + offset(line.m, ds_),
                         static_cast<Int>(scored.size()),
@@ -213,7 +213,7 @@ class Matcher {
   double scale_;
   Int k_;
   Int matched_ = 0;
-  double last_full_rival_ = none;
+  double last_full_runner_up_ = none;
   std::vector<Int> t_;
   std::vector<Int> record_;
   std::vector<std::vector<double>> d_;

@@ -95,7 +95,7 @@ TEST(Quantise, HoldsTheLongestDescriptor) {
 }
 
 TEST(Quantise, IsTheSameOnEveryProcessor) {
-  // A made descriptor without the C++ library's random numbers; its bytes are written down as
+  // A synthetic descriptor without the C++ library's random numbers; its bytes are written down as
   // FNV-1a.
   std::vector<float> descriptor(1000);
   std::uint32_t state = 1;

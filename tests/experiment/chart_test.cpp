@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "experiment/made_up.hpp"
 #include "experiment/report/spread.hpp"
+#include "experiment/synthetic_result.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -43,10 +43,10 @@ TEST(Spread, KeepsOrderGapAndBounds) {
 
 TEST(Chart, DrawsPrecisionOverRecallTheBestFirst) {
   Report report;
-  report.results = {made_up("p", "weak", "d", {{"ds", "20"}}, 0.25),
-                    made_up("p", "strong", "d", {{"ds", "20"}}, 0.8),
-                    made_up("p", "silent", "d", {{"ds", "20"}}, 0.0),
-                    made_up("p", "strong", "d", {{"ds", "100"}}, 0.9)};
+  report.results = {synthetic_result("p", "weak", "d", {{"ds", "20"}}, 0.25),
+                    synthetic_result("p", "strong", "d", {{"ds", "20"}}, 0.8),
+                    synthetic_result("p", "silent", "d", {{"ds", "20"}}, 0.0),
+                    synthetic_result("p", "strong", "d", {{"ds", "100"}}, 0.9)};
   report.figures = {figure(FigureKind::precision_recall, {"method", "descriptor"})};
   report.figures[0].panel = "ds";
   const Chart chart = chart_of(report, 0);
@@ -71,9 +71,9 @@ TEST(Chart, DrawsPrecisionOverRecallTheBestFirst) {
 TEST(Chart, DrawsAMeasureOverASetting) {
   Report report;
   for (const auto& [ds, recall] : {std::pair{"100", 0.5}, {"20", 0.25}, {"40", 0.75}}) {
-    report.results.push_back(made_up("p", "A-", "d", {{"ds", ds}}, recall));
+    report.results.push_back(synthetic_result("p", "A-", "d", {{"ds", ds}}, recall));
   }
-  report.results.push_back(made_up("p", "no ds", "d", {}, 1.0));
+  report.results.push_back(synthetic_result("p", "no ds", "d", {}, 1.0));
   report.figures = {figure(FigureKind::measure, {"method"}),
                     figure(FigureKind::measure, {"method"})};
   report.figures[1].y = "speed_up";
@@ -92,7 +92,7 @@ TEST(Chart, DrawsAMeasureOverASetting) {
 
 TEST(Chart, AxesOfNumbersEndAtRoundOnes) {
   Report report;
-  report.results = {made_up("p", "A-", "d", {{"ds", "20"}}, 0.5)};
+  report.results = {synthetic_result("p", "A-", "d", {{"ds", "20"}}, 0.5)};
   report.figures = {figure(FigureKind::measure, {"method"})};
   report.figures[0].y = "distances";  // 43,264.5
   EXPECT_EQ(chart_of(report, 0).y.ticks,
@@ -101,8 +101,8 @@ TEST(Chart, AxesOfNumbersEndAtRoundOnes) {
 
 TEST(Chart, SaysWhatItDoesNotTellApart) {
   Report report;
-  report.results = {made_up("p", "A-", "d", {{"k", "6"}}, 0.5),
-                    made_up("p", "A-", "d", {{"k", "10"}}, 0.25)};
+  report.results = {synthetic_result("p", "A-", "d", {{"k", "6"}}, 0.5),
+                    synthetic_result("p", "A-", "d", {{"k", "10"}}, 0.25)};
   report.figures = {figure(FigureKind::precision_recall, {"method"})};
   EXPECT_NE(chart_of(report, 0).note.find("Lines of one name differ also in k."),
             std::string::npos);
@@ -114,7 +114,7 @@ TEST(Chart, SaysWhatItDoesNotTellApart) {
 
 TEST(Chart, SaysWhyItIsEmpty) {
   Report report;
-  report.results = {made_up("p", "A-", "d", {}, 0.5)};
+  report.results = {synthetic_result("p", "A-", "d", {}, 0.5)};
   report.figures = {figure(FigureKind::precision_recall, {"method"})};
   report.figures[0].where = {{"method", {"B", "C"}}, {"ds", {"20"}}};
   const Chart chart = chart_of(report, 0);
@@ -129,7 +129,7 @@ TEST(LineStyles, AMethodKeepsItsColourInEveryFigure) {
   for (const char* method : {"A", "B", "C"}) {
     for (const char* descriptor : {"pool5", "conv3"}) {
       if (*method == 'A' && *descriptor == 'c') continue;
-      report.results.push_back(made_up("p", method, descriptor, {{"ds", "20"}}, 0.5));
+      report.results.push_back(synthetic_result("p", method, descriptor, {{"ds", "20"}}, 0.5));
     }
   }
   report.figures = {figure(FigureKind::precision_recall, {"method", "descriptor"}),
@@ -150,7 +150,7 @@ TEST(LineStyles, AMethodKeepsItsColourInEveryFigure) {
 TEST(LineStyles, FortyLinesOfAFigureAllLookDifferent) {
   Report report;
   for (int k = 0; k < 40; ++k) {
-    report.results.push_back(made_up("p", "A-", "d", {{"k", std::to_string(k)}}, 0.5));
+    report.results.push_back(synthetic_result("p", "A-", "d", {{"k", std::to_string(k)}}, 0.5));
   }
   report.figures = {figure(FigureKind::precision_recall, {"k"})};
   const LineStyles styles(report);

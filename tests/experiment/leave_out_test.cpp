@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "expect_setup_error.hpp"
-#include "made_drive.hpp"
 #include "seqloop/files/descriptor_source.hpp"
+#include "synthetic_drive.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -24,8 +24,8 @@ std::vector<cv::Mat> plain(const std::vector<int>& levels, cv::Size size = {64, 
 
 KeptFrames kept(const std::vector<int>& reference, const std::vector<int>& query,
                 const LeaveOutRule& rule = {.dark_below = 40.0, .standing_below = 5.0}) {
-  test::MadeDrive one(plain(reference));
-  test::MadeDrive other(plain(query, {640, 320}));
+  test::SyntheticDrive one(plain(reference));
+  test::SyntheticDrive other(plain(query, {640, 320}));
   return leave_out(one, other, rule);
 }
 
@@ -70,8 +70,8 @@ TEST(LeaveOut, DifferencesAreMeansOverAllPixels) {
     return pictures;
   };
   for (const auto& [change, frames] : {std::pair{16, 1U}, std::pair{-16, 1U}, std::pair{24, 2U}}) {
-    test::MadeDrive one(drive(change));
-    test::MadeDrive other(plain({60, 160}));
+    test::SyntheticDrive one(drive(change));
+    test::SyntheticDrive other(plain({60, 160}));
     EXPECT_EQ(leave_out(one, other, {}).frames.size(), frames) << change;
   }
 }
@@ -86,7 +86,7 @@ TEST(LeaveOut, WhatItRefuses) {
   EXPECT_TRUE(test::says(said, "dark_below"));
   EXPECT_TRUE(test::says(said, "standing_below"));
   files::DescriptorSource described({.rows = 1, .columns = 2, .values = {1.0F, 0.0F}}, 10.0);
-  test::MadeDrive pictures(plain({100}));
+  test::SyntheticDrive pictures(plain({100}));
   EXPECT_TRUE(test::says(test::setup_error([&] { (void)leave_out(pictures, described, {}); }),
                          "descriptors"));
 }

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "expect_setup_error.hpp"
-#include "experiment/made_up.hpp"
+#include "experiment/synthetic_result.hpp"
 #include "temporary_folder.hpp"
 
 namespace seqloop::experiment {
@@ -41,10 +41,11 @@ Report small_report() {
   report.title = "Title";
   report.text = "First.\n\nSecond & last.";
   report.conditions = {{"machine", "two cores"}, {"command", "seqloop eval"}};
-  report.results = {made_up("p", "SeqSLAM", "patches", {{"ds", "20"}}, 0.305),
-                    made_up("p", "SeqSLAM", "patches", {{"ds", "40"}}, 0.21),
-                    made_up("p", "A-SeqCNNSLAM", "pool5", {{"ds", "20"}, {"k", "6"}}, 0.815),
-                    made_up("q", "A-SeqCNNSLAM", "pool5", {{"ds", "20"}, {"k", "6"}}, 0.444)};
+  report.results = {
+      synthetic_result("p", "SeqSLAM", "patches", {{"ds", "20"}}, 0.305),
+      synthetic_result("p", "SeqSLAM", "patches", {{"ds", "40"}}, 0.21),
+      synthetic_result("p", "A-SeqCNNSLAM", "pool5", {{"ds", "20"}, {"k", "6"}}, 0.815),
+      synthetic_result("q", "A-SeqCNNSLAM", "pool5", {{"ds", "20"}, {"k", "6"}}, 0.444)};
   report.results[2].speed_up = 5.23;
   report.figures = {{"Curves", "", FigureKind::precision_recall, "ds", {"method"}, "", "", {}},
                     {"Over ds", "", FigureKind::measure, "", {"method"}, "ds", "recall", {}}};
@@ -119,7 +120,7 @@ TEST(Report, TakesAnyText) {
   report.figures[0].panel = wild;
   report.tables[0].title = report.tables[0].text = wild;
   report.tables[0].rows.push_back(wild);
-  report.results.push_back(made_up(wild, wild, wild, {{wild, wild}}, 0.5));
+  report.results.push_back(synthetic_result(wild, wild, wild, {{wild, wild}}, 0.5));
   const std::string page = written(report).at("index.html");
   EXPECT_FALSE(has(page, "<script"));
   EXPECT_TRUE(has(page, "<h1>&lt;script&gt;alert(&quot;&amp;&quot;)"));
@@ -143,7 +144,7 @@ TEST(Report, ShowsNothingWhereAFilterLetsNothingThrough) {
 
 TEST(Report, BearsResultsWithoutAnswersAndUndefinedNumbers) {
   Report report = small_report();
-  report.results.push_back(made_up("p", "silent", "none", {{"ds", "20"}}, 0.0));
+  report.results.push_back(synthetic_result("p", "silent", "none", {{"ds", "20"}}, 0.0));
   report.results[0].measures.area_under_curve = std::numeric_limits<double>::quiet_NaN();
   report.results[0].measures.recall_at_100_precision = std::numeric_limits<double>::quiet_NaN();
   report.results[1].measures.curve.resize(1);
@@ -160,8 +161,8 @@ TEST(Report, HasRoomForManyLinesPanelsAndLongNames) {
   for (int panel = 0; panel < 12; ++panel) {
     for (int line = 0; line < 40; ++line) {
       const std::string method = "a method with a very long name, number " + std::to_string(line);
-      report.results.push_back(
-          made_up("pair " + std::to_string(panel), method, "d", {{"ds", "20"}}, 0.9 - 0.02 * line));
+      report.results.push_back(synthetic_result("pair " + std::to_string(panel), method, "d",
+                                                {{"ds", "20"}}, 0.9 - 0.02 * line));
     }
   }
   const std::string title(300, 'W');

@@ -4,16 +4,16 @@
 
 #include <cmath>
 
-#include "experiment/made_up.hpp"
 #include "experiment/report/columns.hpp"
 #include "experiment/report/selection.hpp"
 #include "experiment/report/text.hpp"
+#include "experiment/synthetic_result.hpp"
 
 namespace seqloop::experiment {
 namespace {
 
 Result with_settings(std::vector<Setting> settings) {
-  return made_up("p", "m", "d", std::move(settings), 0.5);
+  return synthetic_result("p", "m", "d", std::move(settings), 0.5);
 }
 
 TEST(ResultsCsv, HasARowForEachResultAndAColumnForEachSetting) {
@@ -23,7 +23,8 @@ TEST(ResultsCsv, HasARowForEachResultAndAColumnForEachSetting) {
   first.measures.area_under_curve = 1.0 / 3.0;
   first.most_distances = 4'000'000'000;
   first.candidates = 22.5;
-  Result second = made_up("a, b", "the \"best\"", "two\nlines", {{"k", "10"}, {"ds", "40"}}, 0.0);
+  Result second =
+      synthetic_result("a, b", "the \"best\"", "two\nlines", {{"k", "10"}, {"ds", "40"}}, 0.0);
   second.speed_up = 5.25;
   EXPECT_EQ(results_csv({first, second}),
             "pair,method,descriptor,ds,k,places,queries,frames,descriptor_size,answered,correct,"

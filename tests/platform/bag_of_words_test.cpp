@@ -9,13 +9,13 @@
 #include <opencv2/features2d.hpp>
 
 #include "expect_setup_error.hpp"
-#include "made_drive.hpp"
+#include "synthetic_drive.hpp"
 
 namespace seqloop::opencv {
 namespace {
 
 using test::image_of;
-using test::MadeDrive;
+using test::SyntheticDrive;
 
 /// Boxes with corners that ORB sees.
 cv::Mat scene(std::uint64_t seed, int width = 320, int height = 240) {
@@ -36,7 +36,7 @@ std::vector<cv::Mat> drive(std::uint64_t first, std::size_t count) {
 }
 
 BagOfWords trained(const std::vector<cv::Mat>& pictures, std::size_t words) {
-  MadeDrive source(pictures);
+  SyntheticDrive source(pictures);
   const std::array<FrameSource*, 1> training{&source};
   return BagOfWords(training, words);
 }

@@ -7,14 +7,14 @@
 #include <cmath>
 
 #include "expect_setup_error.hpp"
-#include "made_drive.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
+#include "synthetic_drive.hpp"
 
 namespace seqloop::opencv {
 namespace {
 
 using test::image_of;
-using test::MadeDrive;
+using test::SyntheticDrive;
 using test::textured;
 
 /// 4x4 grey; its layer conv is the picture and the picture negated.
@@ -35,7 +35,7 @@ std::unique_ptr<DnnDescriber> colour_net() {
 
 ChangeRemoval trained(std::unique_ptr<DnnDescriber> net, const std::vector<cv::Mat>& pictures,
                       std::size_t components) {
-  MadeDrive drive(pictures);
+  SyntheticDrive drive(pictures);
   const std::array<FrameSource*, 1> training{&drive};
   return {std::move(net), training, components};
 }
@@ -103,8 +103,8 @@ TEST(ChangeRemoval, MixesGreyAndColourAndSeveralDrives) {
   const auto pixel = [](int b, int g, int r) {
     return cv::Mat(1, 1, CV_8UC3, cv::Scalar(b, g, r));
   };
-  MadeDrive gray(std::vector{cv::Mat(2, 2, CV_8UC1, cv::Scalar(50))});
-  MadeDrive colour(std::vector{pixel(150, 150, 150)});
+  SyntheticDrive gray(std::vector{cv::Mat(2, 2, CV_8UC1, cv::Scalar(50))});
+  SyntheticDrive colour(std::vector{pixel(150, 150, 150)});
   const std::array<FrameSource*, 2> training{&gray, &colour};
   ChangeRemoval describer(colour_net(), training, 1);  // brightness, around 100
   static_cast<void>(describe(describer, pixel(130, 110, 90)));

@@ -5,19 +5,19 @@
 #include <thread>
 
 #include "expect_setup_error.hpp"
-#include "made_drive.hpp"
 #include "program/drives/drives.hpp"
+#include "synthetic_drive.hpp"
 
 namespace seqloop::program {
 namespace {
 
-using test::MadeDrive;
+using test::SyntheticDrive;
 
 /// What describers learned from pictures of `seed` say of one more.
 std::vector<float> described(const DriveSettings& settings, std::uint64_t seed) {
   std::vector<cv::Mat> pictures;
   for (std::uint64_t i = 0; i < 5; ++i) pictures.push_back(test::textured(160, 120, seed + i));
-  MadeDrive drive(pictures);
+  SyntheticDrive drive(pictures);
   const std::array<FrameSource*, 1> training{&drive};
   const std::unique_ptr<Describer> describer = open_describer(settings, training);
   std::vector<float> descriptor(describer->size());

@@ -1,4 +1,5 @@
-// The main job through the real binary, on a drive of made pictures and on made descriptors.
+// The main job through the real binary, on a drive of synthetic pictures and on synthetic
+// descriptors.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>

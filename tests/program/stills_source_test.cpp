@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "expect_setup_error.hpp"
-#include "made_drive.hpp"
 #include "program/drives/stills_options.hpp"
+#include "synthetic_drive.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -24,7 +24,7 @@ std::vector<cv::Mat> pictures(std::size_t count, int width = 8, int height = 6) 
 /// The source's frames that become stills, told by their times.
 std::vector<long> taken(const StillsSettings& settings, std::size_t frames, double rate = fps) {
   const auto stills =
-      make_stills(std::make_unique<test::MadeDrive>(pictures(frames), rate), settings);
+      make_stills(std::make_unique<test::SyntheticDrive>(pictures(frames), rate), settings);
   std::vector<long> found;
   Frame frame;
   while (stills->grab(frame) != Grab::end) {
@@ -39,8 +39,8 @@ std::vector<long> taken(const StillsSettings& settings, std::size_t frames, doub
 TEST(StillsSource, WithoutSettingsIsTheDriveItself) {
   std::vector<cv::Mat> all = pictures(5);
   all[2] = cv::Mat();
-  test::MadeDrive drive(all);
-  const auto stills = make_stills(std::make_unique<test::MadeDrive>(all), {});
+  test::SyntheticDrive drive(all);
+  const auto stills = make_stills(std::make_unique<test::SyntheticDrive>(all), {});
   EXPECT_EQ(stills->frame_count(), 5U);
   EXPECT_EQ(stills->notes(), drive.notes());
   Frame wanted;
@@ -87,7 +87,8 @@ TEST(StillsSource, BeginsAndEndsAndLeavesOutByTheSourcesClock) {
 
 TEST(StillsSource, KnowsItsLengthOnlyWhereEveryFrameIsTaken) {
   const auto length = [](const StillsSettings& settings) {
-    return make_stills(std::make_unique<test::MadeDrive>(pictures(5)), settings)->frame_count();
+    return make_stills(std::make_unique<test::SyntheticDrive>(pictures(5)), settings)
+        ->frame_count();
   };
   EXPECT_EQ(length({.width = 4, .height = 3, .gray = true}), 5U);
   for (const StillsSettings& settings :
@@ -101,7 +102,7 @@ TEST(StillsSource, CutsOutWithoutCopying) {
     const cv::Mat picture = test::textured(20, 12, 3, type);
     const Crop crop{7, 5, 13, 7};  // touches the right and the lower edge
     const auto stills = make_stills(
-        std::make_unique<test::MadeDrive>(std::vector<cv::Mat>{picture}), {.crop = crop});
+        std::make_unique<test::SyntheticDrive>(std::vector<cv::Mat>{picture}), {.crop = crop});
     Frame frame;
     ASSERT_EQ(stills->grab(frame), Grab::frame);
     EXPECT_EQ(frame.index, 0U) << "looked at before, handed over once";
@@ -116,8 +117,9 @@ TEST(StillsSource, CutsOutWithoutCopying) {
 TEST(StillsSource, ResizesBeforeItCutsOut) {
   cv::Mat picture(4, 8, CV_8UC3, cv::Scalar::all(10));
   picture(cv::Rect(4, 0, 4, 4)) = cv::Scalar(30, 60, 90);
-  const auto stills = make_stills(std::make_unique<test::MadeDrive>(std::vector<cv::Mat>{picture}),
-                                  {.width = 4, .height = 2, .crop = {2, 1, 1, 1}, .gray = true});
+  const auto stills =
+      make_stills(std::make_unique<test::SyntheticDrive>(std::vector<cv::Mat>{picture}),
+                  {.width = 4, .height = 2, .crop = {2, 1, 1, 1}, .gray = true});
   Frame frame;
   ASSERT_EQ(stills->grab(frame), Grab::frame);
   ASSERT_EQ(frame.image.format, PixelFormat::gray8);
@@ -131,7 +133,8 @@ TEST(StillsSource, FramesThatCannotBeReadStayInStep) {
   std::vector<cv::Mat> all = pictures(4, 20, 12);
   all[1] = cv::Mat();
   all[2] = test::textured(10, 6);  // too small for the crop
-  const auto stills = make_stills(std::make_unique<test::MadeDrive>(all), {.crop = {12, 8, 4, 2}});
+  const auto stills =
+      make_stills(std::make_unique<test::SyntheticDrive>(all), {.crop = {12, 8, 4, 2}});
   Frame frame;
   EXPECT_EQ(stills->grab(frame), Grab::frame);
   EXPECT_EQ(stills->grab(frame), Grab::unreadable);
@@ -145,13 +148,14 @@ TEST(StillsSource, FramesThatCannotBeReadStayInStep) {
 
 TEST(StillsSource, TellsEveryFaultAtOnce) {
   const std::string said = test::setup_error([] {
-    (void)make_stills(std::make_unique<test::MadeDrive>(pictures(1)), {.every_s = 1e-4,
-                                                                       .from_s = -1.0,
-                                                                       .to_s = -2.0,
-                                                                       .leave_out = {{2.0, 1.0}},
-                                                                       .width = 64,
-                                                                       .height = 32,
-                                                                       .crop = {48, 32, 17, 0}});
+    (void)make_stills(std::make_unique<test::SyntheticDrive>(pictures(1)),
+                      {.every_s = 1e-4,
+                       .from_s = -1.0,
+                       .to_s = -2.0,
+                       .leave_out = {{2.0, 1.0}},
+                       .width = 64,
+                       .height = 32,
+                       .crop = {48, 32, 17, 0}});
   });
   for (const char* word : {"every-s", "from-s", "to-s", "leave-out: 2 to 1", "48x32+17+0"}) {
     EXPECT_TRUE(test::says(said, word));
@@ -163,7 +167,7 @@ TEST(StillsSource, TellsEveryFaultAtOnce) {
 
 TEST(StillsSource, ACropOutsideOfTheFirstPictureIsAFault) {
   const std::string said = test::setup_error([] {
-    (void)make_stills(std::make_unique<test::MadeDrive>(pictures(1, 20, 12)),
+    (void)make_stills(std::make_unique<test::SyntheticDrive>(pictures(1, 20, 12)),
                       {.crop = {10, 10, 0, 3}});
   });
   EXPECT_TRUE(test::says(said, "10x10+0+3 does not lie in pictures of 20x12"));

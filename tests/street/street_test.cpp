@@ -1,4 +1,4 @@
-// The made street: same flags, same frames; truth that is true; any length and size.
+// The synthetic street: same flags, same frames; truth that is true; any length and size.
 #include <gtest/gtest.h>
 
 #include <cmath>

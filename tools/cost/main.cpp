@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cost/instruction_counter.hpp"
-#include "cost/made_picture.hpp"
+#include "cost/synthetic_picture.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/opencv/threads.hpp"
@@ -22,17 +22,17 @@ namespace seqloop::cost {
 namespace {
 
 constexpr std::size_t pictures = 5;
-// More than once round a map of 100,000 places, slice by slice.
+// More than once round a map of 100,000 places, scan by scan.
 constexpr std::size_t steps = 60;
 // Of the places of a map: making more would take most of the time.
-constexpr std::size_t most_made_values = 3476 * 43'264;
+constexpr std::size_t most_synthetic_values = 3476 * 43'264;
 
 struct Cost {
   std::uint64_t mean = 0;
   std::uint64_t most = 0;
 };
 
-/// @param prepare, stage called so many times in turn; what the stage executes is counted
+/// @param prepare, stage called in turn; what the stage executes is counted
 template <typename Prepare, typename Stage>
 Cost cost_of(const InstructionCounter& counter, std::size_t frames, Prepare&& prepare,
              Stage&& stage) {
@@ -57,8 +57,8 @@ void print(std::string_view stage, std::string_view descriptor, std::size_t plac
 
 void count_pictures(const InstructionCounter& counter, std::string_view name,
                     Describer& describer) {
-  const std::vector<std::uint8_t> jpeg = made_jpeg();
-  const RawPicture raw{jpeg, made_width, made_height, 0, RawFormat::mjpg};
+  const std::vector<std::uint8_t> jpeg = synthetic_jpeg();
+  const RawPicture raw{jpeg, synthetic_width, synthetic_height, 0, RawFormat::mjpg};
   turbojpeg::MjpgDecoder decoder(describer.needs());
   Image picture;
   std::vector<float> descriptor(describer.size());
@@ -85,8 +85,8 @@ void count_pictures(const InstructionCounter& counter, std::string_view name,
 void count_matching(const InstructionCounter& counter, std::string_view name, std::size_t places,
                     std::size_t descriptor_size) {
   const MatcherConfig config;
-  const std::size_t made = std::min(places, most_made_values / descriptor_size);
-  program::DrivenDetector drive(config, {places, descriptor_size}, made);
+  const std::size_t synthetic = std::min(places, most_synthetic_values / descriptor_size);
+  program::DrivenDetector drive(config, {places, descriptor_size}, synthetic);
   print("match", name, places,
         cost_of(
             counter, steps, [&] { drive.drive(); }, [&] { drive.step(); }));
@@ -103,8 +103,8 @@ std::size_t parse_places(std::string_view text) {
 
 constexpr std::string_view usage =
     "usage: seqloop-cost built-in|SQUEEZENET.onnx PLACES...\n"
-    "Counts the instructions of each stage of a frame on this thread: one made 640x480 JPEG\n"
-    "picture, and a drive through a map of so many made places. Prints\n"
+    "Counts the instructions of each stage of a frame on this thread: one synthetic 640x480 JPEG\n"
+    "picture, and a drive through a map of synthetic places. Prints\n"
     "stage,descriptor,places,instructions_per_frame,most_instructions.\n";
 
 std::unique_ptr<Describer> open(std::string_view model) {

@@ -12,7 +12,7 @@
 
 #include "seqloop/difference.hpp"
 
-namespace seqloop::rivals {
+namespace seqloop::peers {
 namespace {
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -80,4 +80,4 @@ std::vector<program::Contender> columns(const program::ColumnData& data) {
   return contenders;
 }
 
-}  // namespace seqloop::rivals
+}  // namespace seqloop::peers

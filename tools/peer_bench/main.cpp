@@ -1,4 +1,4 @@
-// `seqloop-rivals bench`: the program's benchmark with other libraries beside it.
+// `seqloop-peers bench`: the program's benchmark with peers, other libraries, beside it.
 #include "peer_bench/columns.hpp"
 #include "peer_bench/matrices.hpp"
 #include "program/bench/bench.hpp"
@@ -6,6 +6,5 @@
 
 int main(int argc, char** argv) {
   using namespace seqloop;
-  return program::run_program(argc, argv,
-                              {program::bench_verb({rivals::columns, rivals::matrices})});
+  return program::run_program(argc, argv, {program::bench_verb({peers::columns, peers::matrices})});
 }

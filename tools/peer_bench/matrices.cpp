@@ -6,7 +6,7 @@
 
 #include "seqloop/difference.hpp"
 
-namespace seqloop::rivals {
+namespace seqloop::peers {
 
 std::vector<program::Contender> matrices(const program::MatrixData& data) {
   openblas_set_num_threads(1);
@@ -23,4 +23,4 @@ std::vector<program::Contender> matrices(const program::MatrixData& data) {
            data.queries.size_bytes() + data.rows.size_bytes(), multiply}};
 }
 
-}  // namespace seqloop::rivals
+}  // namespace seqloop::peers

@@ -4,10 +4,10 @@
 
 #include "program/bench/matrix_bench.hpp"
 
-namespace seqloop::rivals {
+namespace seqloop::peers {
 
 /// The products of all queries with all places, by OpenBLAS on one thread: the matrix alone,
 /// without any matches.
 [[nodiscard]] std::vector<program::Contender> matrices(const program::MatrixData& data);
 
-}  // namespace seqloop::rivals
+}  // namespace seqloop::peers

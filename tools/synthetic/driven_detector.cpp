@@ -15,22 +15,22 @@ constexpr float noise = 1.0F;
 // More do not change what is standardised by.
 constexpr std::size_t most_learnt = 5000;
 
-PlaceMap made_map(MadePlaces& places, const MatcherConfig& config, const Capacity& capacity,
-                  std::size_t made) {
+PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
+                       const Capacity& capacity, std::size_t synthetic) {
   PlaceMap map(config, capacity);
   std::vector<float> descriptor(capacity.descriptor_size);
   if (config.standardisation.on) {
-    for (std::size_t i = 0; i < std::min(made, most_learnt); ++i) {
+    for (std::size_t i = 0; i < std::min(synthetic, most_learnt); ++i) {
       places.see(static_cast<double>(i), 0.0F, descriptor);
       static_cast<void>(map.learn(descriptor));
     }
   }
   do {
     places.see(static_cast<double>(map.size()), 0.0F, descriptor);
-  } while (map.add(descriptor) && map.size() < made);
-  const std::size_t half = made / 2;
+  } while (map.add(descriptor) && map.size() < synthetic);
+  const std::size_t half = synthetic / 2;
   for (std::size_t from = half; map.take(map.rows(), from, 0).slot;) {
-    from = from + 1 < made ? from + 1 : half;
+    from = from + 1 < synthetic ? from + 1 : half;
   }
   return map;
 }
@@ -42,13 +42,13 @@ std::uint64_t DrivenDetector::bytes_needed(const MatcherConfig& config, const Ca
 }
 
 DrivenDetector::DrivenDetector(const MatcherConfig& config, const Capacity& capacity,
-                               std::size_t made)
+                               std::size_t synthetic)
     : stored_bytes_(config.arithmetic == Arithmetic::int8
                         ? padded_bytes(capacity.descriptor_size)
                         : padded_size(capacity.descriptor_size) * sizeof(float)),
       places_(capacity.descriptor_size),
-      robot_(made < capacity.places ? made / 2 : made),
-      map_(made_map(places_, config, capacity, made)),
+      robot_(synthetic < capacity.places ? synthetic / 2 : synthetic),
+      map_(synthetic_map(places_, config, capacity, synthetic)),
       detector_(config, map_),
       descriptor_(capacity.descriptor_size) {
   for (std::size_t frame = 0; frame < config.sequence_length; ++frame) {

@@ -7,11 +7,11 @@
 #include "seqloop/detector.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
-#include "synthetic/made_places.hpp"
+#include "synthetic/places.hpp"
 
 namespace seqloop::program {
 
-/// A detector that localises a robot in a map of made places, to be timed: the robot moves, is
+/// A detector that localises a robot in a map of synthetic places, to be timed: the robot moves, is
 /// recognised, and now and then is carried elsewhere.
 class DrivenDetector {
  public:
@@ -23,10 +23,10 @@ class DrivenDetector {
   DrivenDetector(const MatcherConfig& config, const Capacity& capacity)
       : DrivenDetector(config, capacity, capacity.places) {}
 
-  /// The same with fewer places that are made, 4 at least. The robot drives through the first half
+  /// The same with fewer synthetic places, 4 at least. The robot drives through the first half
   /// of them; what else the map has room for are copies of the other half, which never look like
   /// what the robot sees.
-  DrivenDetector(const MatcherConfig& config, const Capacity& capacity, std::size_t made);
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity, std::size_t synthetic);
 
   /// Drives to where the next frame is, and describes what is there.
   void drive();
@@ -40,8 +40,8 @@ class DrivenDetector {
 
  private:
   std::size_t stored_bytes_;
-  MadePlaces places_;
-  MadeRobot robot_;
+  SyntheticPlaces places_;
+  SyntheticRobot robot_;
   PlaceMap map_;
   Detector detector_;
   std::vector<float> descriptor_;

@@ -18,7 +18,7 @@ class CandidateRanges {
   CandidateRanges(Arena& arena, const MatcherConfig& config);
 
   /// This frame's candidates. @param rows rows of the map that may be searched
-  /// @return the most promising first; they may overlap; none when there are no rows, or none are
+  /// @return the best first; they may overlap; none when there are no rows, or none are
   /// known where no full search is made. Work: K. Allocates: never.
   [[nodiscard]] std::span<const CandidateRun> choose(std::size_t rows) noexcept;
 
@@ -39,7 +39,7 @@ class CandidateRanges {
   void update(std::span<const double> scores, std::span<const CandidateRun> runs,
               std::optional<std::size_t> match, double change_degree) noexcept;
 
-  /// Frames went by unseen: the last frame's best rows are taken to lie so many rows further on,
+  /// Frames went by unseen: each moves the last frame's best rows one row further on,
   /// as they do at velocity 1. Work: K.
   void skip(std::uint64_t frames) noexcept;
 

@@ -5,7 +5,7 @@
 
 namespace seqloop {
 
-/// Sums that are kept side by side, so that the compiler may use registers of up to so many lanes
+/// Sums that are kept side by side, so that the compiler may use registers of up to this many lanes
 /// without changing what is added to what: the result is the same on every processor.
 inline constexpr std::size_t sum_lanes = 8;
 

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_proposals.hpp"
 #include "seqloop/detail/candidate_runs.hpp"
-#include "seqloop/detail/past_rivals.hpp"
-#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/detail/runner_up_history.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
@@ -29,17 +29,16 @@ class LoopDecision {
       : half_window_(config.rwindow / 2), past_(arena, config) {}
 
   /// @param scores [places], infinity for a row that no line fits
-  /// @param keep_rival whether this frame's best rival stands in later, at frames whose candidates
-  /// have none: D4 after a full search
-  /// @param promises rows that could not all be afforded: those that have no score may be rivals by
-  /// what their sketches tell
+  /// @param keep_runner_up whether this frame's runner-up stands in later, at frames whose
+  /// candidates have none: D4 after a full search
+  /// @param proposals rows that could not all be afforded: those that have no score may be the
+  /// runner-up by what their sketches tell
   /// @param rows rows of the map that may be searched
   /// @return the row with the lowest score, the lower row of equals; none when no row has a score
-  /// Work: two passes over the candidates, one over `PastRivals`. Allocates: never.
-  [[nodiscard]] std::optional<BestRow> decide(std::span<const double> scores,
-                                              std::span<const CandidateRun> runs, bool keep_rival,
-                                              std::span<const PromisingRows::Promise> promises,
-                                              std::size_t rows) noexcept;
+  /// Work: two passes over the candidates, one over `RunnerUpHistory`. Allocates: never.
+  [[nodiscard]] std::optional<BestRow> decide(
+      std::span<const double> scores, std::span<const CandidateRun> runs, bool keep_runner_up,
+      std::span<const CandidateProposals::Proposal> proposals, std::size_t rows) noexcept;
 
   /// Frames went by unseen.
   void skip(std::uint64_t frames) noexcept { past_.skip(frames); }
@@ -47,13 +46,13 @@ class LoopDecision {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept { past_.removed(row); }
 
-  /// Forgets what the frames before saw, but for the rival of D4.
+  /// Forgets what the frames before saw, but for the runner-up of D4.
   void restart() noexcept { past_.restart(); }
 
  private:
   std::size_t half_window_;
-  PastRivals past_;
-  std::optional<double> last_rival_;
+  RunnerUpHistory past_;
+  std::optional<double> last_runner_up_;
 };
 
 }  // namespace seqloop

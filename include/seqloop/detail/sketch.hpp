@@ -19,7 +19,7 @@ struct SketchedValue {
   std::uint32_t subtracted : 1;
 };
 
-/// How many values a sketch of so many words adds up.
+/// Values that a sketch of this many words adds up.
 [[nodiscard]] constexpr std::size_t sketched_values(std::size_t words) noexcept {
   return words * 64 * values_per_bit;
 }

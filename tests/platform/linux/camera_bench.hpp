@@ -55,7 +55,7 @@ class CameraBench : public testing::Test {
     return {};
   }
 
-  /// From now on, this call fails so many times.
+  /// From now on, this call fails `times` times.
   void fail(Call call, int error, std::uint64_t times = 1) {
     kernel_.fault = [call, error, left = times](Call made, std::uint64_t) mutable {
       if (made != call || left == 0) return 0;

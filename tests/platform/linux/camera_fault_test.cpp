@@ -76,7 +76,7 @@ void EveryFault::open_with(int error, std::uint64_t nth) {
   EXPECT_LT(kernel.total_calls(), 20'000U);
 }
 
-/// So many calls of the kind fail, in a camera that is silent for a while besides: most calls are
+/// Some calls of the kind fail, in a camera that is silent for a while besides: most calls are
 /// only made to set it up again.
 void EveryFault::run_with(int error, std::uint64_t after, std::uint64_t times) {
   delivered_ = next_index_ = 0;

@@ -33,7 +33,7 @@ struct CameraView {
   std::atomic<std::uint64_t> broken_rules{0};  ///< given back twice, or what never was out
   std::atomic<bool> keeps{false};              ///< giving back hangs
 
-  /// Lets the camera do so many more acts, and returns when the capture thread is done with them.
+  /// Lets the camera do this many more acts, and returns when the capture thread is done with them.
   void act(std::uint64_t more = 1) {
     const std::uint64_t all = allowed.load() + more;
     allowed.store(all);

@@ -13,7 +13,7 @@
 
 namespace seqloop::live::test {
 
-/// Describes a fake camera's picture by the row of a made drive that its index stands for.
+/// Describes a fake camera's picture by the row of a synthetic drive that its index stands for.
 class FakeDescriber : public Describer {
  public:
   explicit FakeDescriber(oracle::Vectors drive) : drive_(std::move(drive)) {}

@@ -16,7 +16,7 @@ reader_waits() {
   sleep 1
 }
 
-# plays FRAMES FEEDER_FLAGS...: all lines of so many frames, at which the run ends
+# plays FRAMES FEEDER_FLAGS...: all lines of a run that ends after FRAMES
 plays() {
   local frames=$1
   shift

@@ -57,7 +57,7 @@ double microseconds(Nanoseconds duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-std::vector<Contender> timed(const BenchSettings& settings, const Rivals& rivals) {
+std::vector<Contender> timed(const BenchSettings& settings, const Peers& peers) {
   const auto asked = [&](std::string_view what) {
     if (settings.only.empty()) return what == "describe" || what == "step";
     return settings.only == what;
@@ -68,7 +68,7 @@ std::vector<Contender> timed(const BenchSettings& settings, const Rivals& rivals
   for (const std::size_t places : settings.places) {
     const Capacity size{places, settings.descriptor_size};
     if (asked("column")) {
-      time_columns(size, settings.graph_places, rivals.columns, settings.rounds, all);
+      time_columns(size, settings.graph_places, peers.columns, settings.rounds, all);
     }
     if (asked("search")) time_search(places, settings.ds, settings.rounds, all);
     if (asked("step")) time_steps(size, settings.ds, settings.rounds, all);
@@ -77,14 +77,14 @@ std::vector<Contender> timed(const BenchSettings& settings, const Rivals& rivals
       if (places > most_matrix_places) {
         say("matrix: left out for {} places, more than {}", places, most_matrix_places);
       } else {
-        time_matrix(size, settings.ds, rivals.matrices, settings.rounds, all);
+        time_matrix(size, settings.ds, peers.matrices, settings.rounds, all);
       }
     }
   }
   return all;
 }
 
-void bench(const BenchSettings& settings, const Rivals& rivals, Faults faults) {
+void bench(const BenchSettings& settings, const Peers& peers, Faults faults) {
   if (!settings.only.empty() && std::ranges::find(whats, settings.only) == whats.end()) {
     faults.push_back({"only", "'" + settings.only + "' is not timed", all_whats()});
   }
@@ -104,7 +104,7 @@ void bench(const BenchSettings& settings, const Rivals& rivals, Faults faults) {
   say("{}; bench --only {} --n {} --d {} --ds {} --rounds {}", condition_line(),
       settings.only.empty() ? "[describe and step]" : settings.only,
       fmt::join(settings.places, ","), settings.descriptor_size, settings.ds, settings.rounds);
-  const std::vector<Contender> all = timed(settings, rivals);
+  const std::vector<Contender> all = timed(settings, peers);
   if (!settings.json) fmt::print("{:>85} {:>10} {:>10} {:>10}\n", "p50", "p99", "p99.9", "max");
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -132,13 +132,13 @@ void bench(const BenchSettings& settings, const Rivals& rivals, Faults faults) {
 
 }  // namespace
 
-Verb bench_verb(const Rivals& rivals) {
+Verb bench_verb(const Peers& peers) {
   const auto settings = std::make_shared<BenchSettings>();
   Verb verb{
       "bench",
       "Time describing (beside --descriptor or --model), steps and their parts here, on one thread",
       {},
-      [settings, rivals](Faults faults) { bench(*settings, rivals, std::move(faults)); }};
+      [settings, peers](Faults faults) { bench(*settings, peers, std::move(faults)); }};
   verb.options.flag("json", settings->json, "print JSON");
   verb.options.text("only", settings->only, all_whats() + " [describe and step]");
   verb.options.add({"n", ValueKind::text, "places of the map, several with commas between [3476]",
@@ -148,7 +148,7 @@ Verb bench_verb(const Rivals& rivals) {
   verb.options.count("ds", settings->ds, "sequence length [100]");
   verb.options.count("rounds", settings->rounds,
                      "times that each is timed, or as often as 20 s allow [200]");
-  if (rivals.columns) {
+  if (peers.columns) {
     verb.options.count("graph-places", settings->graph_places,
                        "places up to which FAISS's HNSW is built, which takes long [20000]");
   }

@@ -7,12 +7,12 @@
 namespace seqloop::program {
 
 /// What other libraries do, to be timed beside ours; may be empty.
-struct Rivals {
-  RivalColumns columns{};
-  RivalMatrices matrices{};
+struct Peers {
+  PeerColumns columns{};
+  PeerMatrices matrices{};
 };
 
-/// `bench`, with rivals in the same run.
-[[nodiscard]] Verb bench_verb(const Rivals& rivals);
+/// `bench`, with peers in the same run.
+[[nodiscard]] Verb bench_verb(const Peers& peers);
 
 }  // namespace seqloop::program

@@ -14,12 +14,12 @@
 #include "seqloop/detail/quantised.hpp"
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/difference.hpp"
-#include "synthetic/made_places.hpp"
+#include "synthetic/places.hpp"
 
 namespace seqloop::program {
 namespace {
 
-/// The same made places in every form that is timed, and room for what comes out.
+/// The same synthetic places in every form that is timed, and room for what comes out.
 struct Places {
   explicit Places(const Capacity& capacity)
       : size(capacity),
@@ -39,7 +39,7 @@ struct Places {
     rows = arena.take<float>("rows", size.places * query.size());
     small_rows = arena.take<std::int8_t>("small rows", size.places * stride);
     sketches = arena.take<std::uint64_t>("sketches", size.places * sketch_words);
-    MadePlaces street(size.descriptor_size);
+    SyntheticPlaces street(size.descriptor_size);
     std::vector<SketchedValue> chosen(sketched_values(sketch_words));
     choose_sketched_values(size.descriptor_size, chosen);
     for (std::size_t row = 0; row < size.places; ++row) {
@@ -110,9 +110,9 @@ std::vector<Contender> our_columns(Places& places) {
 
 }  // namespace
 
-void time_columns(const Capacity& size, std::size_t graph_places, const RivalColumns& rivals,
+void time_columns(const Capacity& size, std::size_t graph_places, const PeerColumns& peers,
                   std::size_t rounds, std::vector<Contender>& timed) {
-  const std::size_t copies = !rivals ? 1 : size.places <= graph_places ? 3 : 2;
+  const std::size_t copies = !peers ? 1 : size.places <= graph_places ? 3 : 2;
   const std::uint64_t floats =
       std::uint64_t{size.places} * padded_size(size.descriptor_size) * sizeof(float);
   const std::uint64_t bytes =
@@ -120,10 +120,9 @@ void time_columns(const Capacity& size, std::size_t graph_places, const RivalCol
   if (!fits_memory(bytes, fmt::format("column of {} places", size.places))) return;
   Places places(size);
   std::vector<Contender> contenders = our_columns(places);
-  if (rivals) {
-    for (Contender& rival :
-         rivals({size, places.query, places.rows, size.places <= graph_places})) {
-      contenders.push_back(std::move(rival));
+  if (peers) {
+    for (Contender& peer : peers({size, places.query, places.rows, size.places <= graph_places})) {
+      contenders.push_back(std::move(peer));
     }
   }
   time_in_turn(std::move(contenders), rounds, timed);

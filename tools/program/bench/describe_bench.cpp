@@ -22,7 +22,7 @@ constexpr int width = 640;
 constexpr int height = 480;
 
 /// A picture with edges in all directions. What is in it does not change what it costs.
-std::vector<std::uint8_t> made_picture() {
+std::vector<std::uint8_t> synthetic_picture() {
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -61,7 +61,7 @@ void describe(Describer& describer, const Image& image, std::span<float> descrip
 
 void time_describing(const DriveSettings& drive, std::size_t rounds,
                      std::vector<Contender>& timed) {
-  const std::vector<std::uint8_t> pixels = made_picture();
+  const std::vector<std::uint8_t> pixels = synthetic_picture();
   std::vector<std::pair<std::string, std::unique_ptr<Describer>>> describers;
   describers.emplace_back("seqloop-built-in", opencv::make_builtin_describer());
   const std::string other = name_of(drive);
@@ -80,7 +80,7 @@ void time_describing(const DriveSettings& drive, std::size_t rounds,
 
 void time_loop(std::size_t places, std::size_t ds, std::size_t rounds,
                std::vector<Contender>& timed) {
-  const std::vector<std::uint8_t> camera = made_picture();
+  const std::vector<std::uint8_t> camera = synthetic_picture();
   std::vector<std::uint8_t> grabbed(camera.size());
   const auto describer = opencv::make_builtin_describer();
   std::vector<float> described(describer->size());

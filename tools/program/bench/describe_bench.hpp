@@ -13,7 +13,7 @@ namespace seqloop::program {
 void time_describing(const DriveSettings& drive, std::size_t rounds, std::vector<Contender>& timed);
 
 /// A whole turn of the loop: such a frame is grabbed from memory and described, then matched with
-/// so many made places; what is matched is made too, so that the robot is recognised.
+/// synthetic places; what is matched is synthetic too, so that the robot is recognised.
 /// @param ds sequence length
 void time_loop(std::size_t places, std::size_t ds, std::size_t rounds,
                std::vector<Contender>& timed);

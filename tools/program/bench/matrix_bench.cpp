@@ -7,7 +7,7 @@
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
-#include "synthetic/made_places.hpp"
+#include "synthetic/places.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -22,14 +22,14 @@ MatcherConfig config_of(std::size_t ds) {
   return config;
 }
 
-/// A made drive, kept.
+/// A synthetic drive, kept.
 class Drive {
  public:
   Drive(const Capacity& size, float noise)
       : size_(size.descriptor_size),
         stride_(padded_size(size_)),
         values_(size.places * stride_, 0.0F) {
-    MadePlaces street(size_);
+    SyntheticPlaces street(size_);
     for (std::size_t i = 0; i < size.places; ++i) {
       street.see(static_cast<double>(i), noise, std::span(values_).subspan(i * stride_, size_));
     }
@@ -65,7 +65,7 @@ void match_all(Detector& detector, const Drive& drive) {
 
 }  // namespace
 
-void time_matrix(const Capacity& size, std::size_t ds, const RivalMatrices& rivals,
+void time_matrix(const Capacity& size, std::size_t ds, const PeerMatrices& peers,
                  std::size_t rounds, std::vector<Contender>& timed) {
   const MatcherConfig config = config_of(ds);
   const std::uint64_t drive_bytes =
@@ -83,9 +83,9 @@ void time_matrix(const Capacity& size, std::size_t ds, const RivalMatrices& riva
   contenders.push_back({"matrix", "seqloop-int8-with-matches", size.places, size.descriptor_size,
                         goes * size.places * padded_bytes(size.descriptor_size),
                         [&] { match_all(detector, query); }});
-  if (rivals) {
-    for (Contender& rival : rivals({size, query.values(), reference.values()})) {
-      contenders.push_back(std::move(rival));
+  if (peers) {
+    for (Contender& peer : peers({size, query.values(), reference.values()})) {
+      contenders.push_back(std::move(peer));
     }
   }
   time_in_turn(std::move(contenders), rounds, timed, {1, 1});

@@ -11,7 +11,7 @@
 #include "seqloop/detail/sequence_search.hpp"
 #include "seqloop/detail/trajectories.hpp"
 #include "seqloop/place_map.hpp"
-#include "synthetic/made_places.hpp"
+#include "synthetic/places.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -28,9 +28,9 @@ MatcherConfig config_of(std::size_t ds, Arithmetic arithmetic) {
   return config;
 }
 
-PlaceMap made_map(const MatcherConfig& config, std::size_t places) {
+PlaceMap synthetic_map(const MatcherConfig& config, std::size_t places) {
   PlaceMap map(config, {places, descriptor_size});
-  MadePlaces street(descriptor_size);
+  SyntheticPlaces street(descriptor_size);
   std::vector<float> place(descriptor_size);
   do {
     street.see(static_cast<double>(map.size()), 0.0F, place);
@@ -42,13 +42,13 @@ PlaceMap made_map(const MatcherConfig& config, std::size_t places) {
 struct Window {
   Window(std::size_t ds, std::size_t places, Arithmetic arithmetic)
       : config(config_of(ds, arithmetic)),
-        map(made_map(config, places)),
+        map(synthetic_map(config, places)),
         memory(needed(), {}),
         arena(memory.span()),
         lines(arena, ds, config.vmin, config.vmax),
         slices(arena, config, ds + 1, {places, descriptor_size}),
         search(arena, lines, config, places) {
-    MadePlaces street(descriptor_size);
+    SyntheticPlaces street(descriptor_size);
     std::vector<float> seen(descriptor_size);
     for (std::size_t frame = 0; frame < lines.window(); ++frame) {
       street.see(static_cast<double>(std::min(frame, places - 1)), 1.0F, seen);
@@ -78,7 +78,8 @@ struct Window {
   SequenceSearch search;
 };
 
-/// Every line of every row from end to end, so many rows at once that sums stay near.
+/// Every line of every row from end to end, by blocks of rows small enough for their sums to stay
+/// in the cache.
 class PlainSearch {
  public:
   explicit PlainSearch(const Window& window)

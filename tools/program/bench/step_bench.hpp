@@ -19,7 +19,7 @@ struct TimedMethod {
 /// @param ds sequence length
 [[nodiscard]] std::vector<TimedMethod> timed_methods(std::size_t ds);
 
-/// Whole steps of a drive through a map of so many made places. What a step reads is the mean.
+/// Whole steps of a drive through a map of synthetic places. What a step reads is the mean.
 /// Methods that fit half of the available memory together take turns; what does not fit alone is
 /// left out, and it is said.
 void time_steps(const Capacity& size, std::size_t ds, std::size_t rounds,

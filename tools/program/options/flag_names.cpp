@@ -17,7 +17,7 @@ struct Renamed {
 // first.
 constexpr std::array members{Renamed{"sequence_length", "ds"},
                              Renamed{"initial_k", "initial-k"},
-                             Renamed{"relocalising.slice", "slice"},
+                             Renamed{"relocalising.rows_scanned", "slice"},
                              Renamed{"relocalising.distances", "distances"},
                              Renamed{"full_map", "full-map"},
                              Renamed{"frames_at_once", "frames-at-once"},

@@ -76,7 +76,8 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        }});
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
-  options.count("rwindow", config.rwindow, "rows around the best that are no rivals [10]");
+  options.count("rwindow", config.rwindow,
+                "rows around the best that cannot be the runner-up [10]");
   options.count("k", config.k, "a-seqcnnslam: candidate ranges [10]");
   options.count("num", config.num, "a range holds this many rows and one [16]");
   options.count("reinit", config.reinit,
@@ -106,12 +107,11 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        "seqslam and mean-absolute]",
        [&settings](std::string_view value) { settings.arithmetic = parse_arithmetic(value); }});
   options.add({"relocalise", ValueKind::on_off,
-               "a- and o-seqcnnslam: look at a slice of the map at every frame, never search all "
-               "of it [on; "
-               "off under --paper]",
+               "a- and o-seqcnnslam: scan a part of the map at every frame, never search all of it "
+               "[on; off under --paper]",
                [&settings](std::string_view value) { settings.relocalise = parse_on_off(value); }});
-  options.count("slice", config.relocalising.slice,
-                "places of the map that a frame looks at to relocalise [4096]");
+  options.count("slice", config.relocalising.rows_scanned,
+                "places of the map that a frame scans to relocalise [4096]");
   options.count("distances", config.relocalising.distances,
                 "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
   options.add({"full-map", ValueKind::text,

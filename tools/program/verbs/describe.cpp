@@ -78,7 +78,7 @@ Verb describe_verb() {
                     "camera (/dev/video0, until interrupted), image folder or video file");
   verb.options.path("out", settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
-  verb.options.count("frames", settings->frames, "stop after so many frames [0: all]");
+  verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
   add_camera_options(verb.options, settings->camera);
   add_drive_options(verb.options, settings->drive);
   return verb;

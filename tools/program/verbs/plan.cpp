@@ -49,8 +49,9 @@ void plan(const PlanSettings& settings, Faults faults) {
   if (!relocalises(config)) return;
   fmt::print("{:>16}  places looked at by 32 bytes of their sketches\n", most.scanned);
   fmt::print("{:>16}  pairs of sketches, 128 bytes each\n", most.sketches);
-  fmt::print("{:>16}  frames until the whole map was looked at\n",
-             (capacity.places + config.relocalising.slice - 1) / config.relocalising.slice);
+  fmt::print(
+      "{:>16}  frames until the whole map was looked at\n",
+      (capacity.places + config.relocalising.rows_scanned - 1) / config.relocalising.rows_scanned);
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ Verb run_verb() {
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "
                     "as it goes [max]",
                     [settings](std::string_view value) { settings->pace = parse_pace(value); }});
-  verb.options.count("frames", settings->frames, "stop after so many frames [0: all]");
+  verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
   verb.options.count("max-places", settings->max_places,
                      "room in the map [as long as the drive, 20000 where that is not known]");
   verb.options.number("give-up-s", settings->give_up_s,

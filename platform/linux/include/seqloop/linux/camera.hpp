@@ -75,8 +75,8 @@ class Camera : public CaptureDevice {
   /// @param system, clock live as long as the camera; the clock is CLOCK_MONOTONIC
   Camera(CameraOptions options, SystemCalls& system, Clock& clock);
 
-  /// Polls in slices of at most 50 ms. While opening anew it waits for the driver, which may take
-  /// longer.
+  /// Polls in time steps of at most 50 ms. While opening anew it waits for the driver, which may
+  /// take longer.
   void next(Captured& captured, const std::atomic<bool>& stop) noexcept override;
   void give_back(const Captured& captured) noexcept override;
 

@@ -17,7 +17,7 @@ class SteadyClock : public Clock {
     return std::chrono::seconds(time.tv_sec) + Nanoseconds(time.tv_nsec);
   }
 
-  /// Nothing wakes it earlier: who must heed a stop sleeps in slices.
+  /// Nothing wakes it earlier: who must heed a stop sleeps in time steps.
   void sleep_until(Nanoseconds moment) noexcept override {
     const auto seconds = std::chrono::floor<std::chrono::seconds>(moment);
     timespec time{};

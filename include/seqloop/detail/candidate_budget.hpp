@@ -14,12 +14,12 @@
 namespace seqloop {
 
 /// The rows that a frame is compared with, their differences computed. Where the detector
-/// relocalises, a frame has so many distances to spend, and who is admitted first is served first:
+/// relocalises, a frame has a budget of distances, spent in the order in which ranges are added:
 /// what one frame could only begin, the next one finds begun.
-class AdmittedRows {
+class CandidateBudget {
  public:
   /// Allocates: from the arena only.
-  AdmittedRows(Arena& arena, const MatcherConfig& config);
+  CandidateBudget(Arena& arena, const MatcherConfig& config);
 
   /// The most rows that a frame is compared with, and distances that these cost, where the detector
   /// relocalises.
@@ -44,7 +44,7 @@ class AdmittedRows {
   /// Where not all of them can be afforded, as many around the middle as can; where not even one,
   /// what can be computed is: the next frames need it too.
   /// Work: distances, up to the limit. Allocates: never.
-  void admit(const Window& window, CandidateRun range) noexcept;
+  void add(const Window& window, CandidateRun range) noexcept;
 
   /// @return in rising order, disjoint, not touching
   [[nodiscard]] std::span<const CandidateRun> runs() const noexcept { return runs_.runs(); }

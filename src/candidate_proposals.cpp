@@ -1,4 +1,4 @@
-#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/detail/candidate_proposals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,29 +11,29 @@
 namespace seqloop {
 namespace {
 
-// A row of the slice is first compared with the newest frame alone. The best few of them, and what
-// is remembered, are compared with some frames before it too, so far apart that they differ.
+// A scanned row is first compared with the newest frame alone. The best few rows, and those that
+// are remembered, are then compared with some earlier frames too, far enough apart to differ.
 constexpr std::size_t frames_looked_at = 4;
 constexpr std::size_t frames_apart = 3;
 constexpr std::size_t looked_at_closely = 16;
 
-// What is remembered may be faster or slower than it was in the map.
+// The robot may be faster or slower than it was in the map.
 constexpr std::size_t slack = 1;
 
-// Of so many lines through what is remembered the best is chosen by looking at so many pieces of
-// it, and then weighed by every so many-th frame of the window: rows that are no candidates count
-// as rivals by that.
+// Through each remembered row `lines_tried` lines are compared at the ends of `pieces_tried`
+// pieces. The best one is then weighed by every `frames_between`-th frame of the window: a row that
+// is no candidate can be the runner-up by that weight.
 constexpr std::size_t lines_tried = 9;
 constexpr std::size_t pieces_tried = 8;
 constexpr std::size_t frames_between = 2;
 
-// Of so many neighbours in a slice only the best is looked at closely.
+// Of this many neighbouring rows of a scan only the best is looked at closely.
 constexpr std::size_t neighbours = 16;
 
-constexpr std::uint32_t chance =
-    DescriptorRows::close_words * 64 / 2;  // bits that differ by chance
+// Bits that differ between pictures that have nothing in common.
+constexpr std::uint32_t chance = DescriptorRows::close_words * 64 / 2;
 
-/// How far apart two unit vectors are, of which so large a share of the bits differs: the angle
+/// The distance of two unit vectors whose sketches differ in this share of their bits: the angle
 /// between them is about pi times the share. The sine is Bhaskara's, which is off by .002 at most
 /// and the same on every processor.
 double chord(double share) noexcept {
@@ -41,19 +41,22 @@ double chord(double share) noexcept {
   return 32.0 * x / (5.0 - 4.0 * x);
 }
 
-std::size_t slice_of(const MatcherConfig& config, std::size_t places) {
-  return std::min(config.relocalising.slice, places);
+std::size_t rows_a_scan(const MatcherConfig& config, std::size_t places) {
+  return std::min(config.relocalising.rows_scanned, places);
 }
 
 }  // namespace
 
-PromisingRows::PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places)
-    : ds_(config.sequence_length), slice_(slice_of(config, places)), near_(config.num / 2) {
+CandidateProposals::CandidateProposals(Arena& arena, const MatcherConfig& config,
+                                       std::size_t places)
+    : ds_(config.sequence_length),
+      rows_a_scan_(rows_a_scan(config, places)),
+      near_(config.num / 2) {
   const bool used = relocalises(config);
   remembered_ = arena.take<Alike>("rows that look alike", used ? most : 0);
-  promises_ = arena.take<Promise>("promising lines", used ? most : 0);
-  best_ = arena.take<Alike>("best rows of a slice", used ? looked_at_closely : 0);
-  bits_ = arena.take<std::uint32_t>("differing bits of a slice", used ? slice_ : 0);
+  proposals_ = arena.take<Proposal>("proposed lines", used ? most : 0);
+  best_ = arena.take<Alike>("best rows of a scan", used ? looked_at_closely : 0);
+  bits_ = arena.take<std::uint32_t>("differing bits of a scan", used ? rows_a_scan_ : 0);
   behind_ = arena.take<std::uint32_t>("lines tried", used ? lines_tried * (ds_ + 1) : 0);
   if (!used || arena.measuring()) return;
   for (std::size_t line = 0; line < lines_tried; ++line) {
@@ -67,16 +70,17 @@ PromisingRows::PromisingRows(Arena& arena, const MatcherConfig& config, std::siz
   }
 }
 
-PromisingRows::Looks PromisingRows::most_looks(const MatcherConfig& config,
-                                               std::size_t places) noexcept {
+CandidateProposals::Looks CandidateProposals::most_looks(const MatcherConfig& config,
+                                                         std::size_t places) noexcept {
   return {
-      slice_of(config, places),
+      rows_a_scan(config, places),
       (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at +
           most * (lines_tried * (pieces_tried + 1) + config.sequence_length / frames_between + 1)};
 }
 
-PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const PlaceMap& map,
-                                         std::size_t rows, std::uint64_t oldest) noexcept {
+CandidateProposals::Looks CandidateProposals::look(const DifferenceSlices& slices,
+                                                   const PlaceMap& map, std::size_t rows,
+                                                   std::uint64_t oldest) noexcept {
   scanned_ = 0;
   sketches_ = 0;
   const std::uint64_t newest = slices.frames() - 1;
@@ -88,8 +92,8 @@ PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const P
     // What is remembered goes where count_ is or before, which has been read already.
     look_closely(slices, map, rows, remembered_[i].row + 1);
   }
-  const std::span<const Alike> found = best_of_slice(slices, map, rows);
-  for (const Alike& best : found) bring(map, rows, best.row);
+  const std::span<const Alike> found = best_of_scan(slices, map, rows);
+  for (const Alike& best : found) prefetch(map, rows, best.row);
   for (const Alike& best : found) {
     look_closely(slices, map, rows, best.row);
   }
@@ -97,15 +101,14 @@ PromisingRows::Looks PromisingRows::look(const DifferenceSlices& slices, const P
   return {scanned_, sketches_};
 }
 
-/// The rows of the next slice that look most like the newest frame, as far as they are no
+/// The rows of the next scan that look most like the newest frame, one at most of each group of
 /// neighbours.
-std::span<const PromisingRows::Alike> PromisingRows::best_of_slice(const DifferenceSlices& slices,
-                                                                   const PlaceMap& map,
-                                                                   std::size_t rows) noexcept {
+std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
+    const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows) noexcept {
   if (rows == 0) return {};
-  // The slices go round: behind the last row comes the first, and none is longer than the map.
+  // Scans go round: after the last row comes the first, and none is longer than the map.
   const std::size_t begin = next_ % rows;
-  const std::span<std::uint32_t> bits = bits_.first(std::min(slice_, rows));
+  const std::span<std::uint32_t> bits = bits_.first(std::min(rows_a_scan_, rows));
   const std::size_t to_the_end = std::min(bits.size(), rows - begin);
   scan(slices, map, begin, bits.first(to_the_end));
   scan(slices, map, 0, bits.subspan(to_the_end));
@@ -124,8 +127,8 @@ std::span<const PromisingRows::Alike> PromisingRows::best_of_slice(const Differe
 }
 
 /// Compares the newest frame with consecutive rows.
-void PromisingRows::scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
-                         std::span<std::uint32_t> bits) noexcept {
+void CandidateProposals::scan(const DifferenceSlices& slices, const PlaceMap& map,
+                              std::size_t first, std::span<std::uint32_t> bits) noexcept {
   const std::size_t query = slices.row_of(slices.frames() - 1);
   map.order().in_slots(
       first, first + bits.size(), [&](std::size_t row, std::size_t slot, std::size_t count) {
@@ -135,8 +138,8 @@ void PromisingRows::scan(const DifferenceSlices& slices, const PlaceMap& map, st
 }
 
 /// Compares a row and those beside it with several frames, and remembers the best of them.
-void PromisingRows::look_closely(const DifferenceSlices& slices, const PlaceMap& map,
-                                 std::size_t rows, std::size_t row) noexcept {
+void CandidateProposals::look_closely(const DifferenceSlices& slices, const PlaceMap& map,
+                                      std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
   Alike best{std::numeric_limits<std::uint32_t>::max(), row};
   for (std::size_t r = row - std::min(row, slack); r < std::min(row + slack + 1, rows); ++r) {
@@ -150,9 +153,9 @@ void PromisingRows::look_closely(const DifferenceSlices& slices, const PlaceMap&
   remember(best);
 }
 
-/// Has the processor fetch what looking closely at a row will read: no frame has left it in the
-/// caches.
-void PromisingRows::bring(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept {
+/// Has the processor fetch what looking closely at a row will read: it is in no cache.
+void CandidateProposals::prefetch(const PlaceMap& map, std::size_t rows,
+                                  std::size_t row) const noexcept {
   const std::size_t reach = slack + (frames_ - 1) * frames_apart;
   map.order().in_slots(row - std::min(row, reach), std::min(row + slack + 1, rows),
                        [&](std::size_t, std::size_t slot, std::size_t count) {
@@ -160,19 +163,20 @@ void PromisingRows::bring(const PlaceMap& map, std::size_t rows, std::size_t row
                        });
 }
 
-/// Differing bits of a frame, so many before the newest, and the row so many before a row; rows
-/// that are not there look like any other.
-std::uint32_t PromisingRows::differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
-                                            std::size_t rows, std::size_t back, std::size_t row,
-                                            std::size_t behind) noexcept {
+/// Differing bits of the frame `back` frames before the newest and the row `behind` rows before
+/// `row`; a row that is not there differs as much as by chance.
+std::uint32_t CandidateProposals::differing_bits(const DifferenceSlices& slices,
+                                                 const PlaceMap& map, std::size_t rows,
+                                                 std::size_t back, std::size_t row,
+                                                 std::size_t behind) noexcept {
   if (behind > row || row - behind >= rows) return chance;
   ++sketches_;
   return map.rows().look_closely(slices.queries(), slices.row_of(slices.frames() - 1 - back),
                                  map.order().slot(row - behind));
 }
 
-/// Keeps a promise if it is among the best, and the best of those near it.
-void PromisingRows::remember(Alike alike) noexcept {
+/// Keeps a row if it is among the best, and only the best of those that are near each other.
+void CandidateProposals::remember(Alike alike) noexcept {
   const auto begin = remembered_.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>(count_);
   const auto near = std::find_if(begin, end, [&](const Alike& other) {
@@ -187,8 +191,8 @@ void PromisingRows::remember(Alike alike) noexcept {
 }
 
 /// Weighs what is remembered along the whole window.
-void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
-                          std::uint64_t oldest) noexcept {
+void CandidateProposals::weigh(const DifferenceSlices& slices, const PlaceMap& map,
+                               std::size_t rows, std::uint64_t oldest) noexcept {
   const auto reach =
       static_cast<std::size_t>(std::min<std::uint64_t>(slices.frames() - 1 - oldest, ds_));
   for (std::size_t i = 0; i < count_; ++i) {
@@ -199,17 +203,17 @@ void PromisingRows::weigh(const DifferenceSlices& slices, const PlaceMap& map, s
       bits += differing_bits(slices, map, rows, back, row, rows_behind(line, back));
     }
     const std::size_t frames = reach / frames_between + 1;
-    const Promise promise{
+    const Proposal proposal{
         chord(static_cast<double>(bits) / (2.0 * chance * static_cast<double>(frames))),
         row - std::min(row, rows_behind(line, ds_ - ds_ / 2))};
-    keep_lowest(promises_, i, promise, &Promise::difference);
+    keep_lowest(proposals_, i, proposal, &Proposal::difference);
   }
 }
 
 /// Of the lines that end at a row, the one that looks most alike at a few frames of the window.
-std::size_t PromisingRows::best_line(const DifferenceSlices& slices, const PlaceMap& map,
-                                     std::size_t rows, std::size_t row,
-                                     std::size_t reach) noexcept {
+std::size_t CandidateProposals::best_line(const DifferenceSlices& slices, const PlaceMap& map,
+                                          std::size_t rows, std::size_t row,
+                                          std::size_t reach) noexcept {
   std::array<std::uint32_t, lines_tried> sums{};
   for (std::size_t piece = 0; piece <= pieces_tried; ++piece) {
     const std::size_t back = ds_ * piece / pieces_tried;
@@ -227,13 +231,13 @@ std::size_t PromisingRows::best_line(const DifferenceSlices& slices, const Place
   return static_cast<std::size_t>(std::distance(sums.begin(), std::ranges::min_element(sums)));
 }
 
-void PromisingRows::skip(std::uint64_t frames) noexcept {
+void CandidateProposals::skip(std::uint64_t frames) noexcept {
   for (Alike& alike : remembered_.first(count_)) {
     alike.row += static_cast<std::size_t>(frames);
   }
 }
 
-void PromisingRows::removed(std::size_t row) noexcept {
+void CandidateProposals::removed(std::size_t row) noexcept {
   for (Alike& alike : remembered_.first(count_)) {
     if (alike.row > row) --alike.row;
   }

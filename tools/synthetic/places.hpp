@@ -13,10 +13,10 @@ namespace seqloop::program {
 /// through random directions, in which neighbours look alike. Every ten places it comes by a
 /// direction that follows from its number alone, so that a map of a million places and drives
 /// through it need no memory.
-class MadePlaces {
+class SyntheticPlaces {
  public:
   /// @param size values in a descriptor, D
-  explicit MadePlaces(std::size_t size);
+  explicit SyntheticPlaces(std::size_t size);
 
   /// What is seen at a place, or between two.
   /// @param position in places from the first one
@@ -39,9 +39,9 @@ class MadePlaces {
 
 /// A robot that drives through a street, a little faster or slower than the map was made, and every
 /// 500 frames is carried elsewhere.
-class MadeRobot {
+class SyntheticRobot {
  public:
-  explicit MadeRobot(std::size_t places) : places_(places) {}
+  explicit SyntheticRobot(std::size_t places) : places_(places) {}
 
   /// @return where the next frame is, in places from the first one
   double next();

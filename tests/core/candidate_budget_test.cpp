@@ -1,5 +1,5 @@
-// What is admitted is all there, and costs no more than it may.
-#include "seqloop/detail/admitted_rows.hpp"
+// What is taken in is all there, and costs no more than it may.
+#include "seqloop/detail/candidate_budget.hpp"
 
 #include <random>
 
@@ -8,39 +8,39 @@
 namespace seqloop {
 namespace {
 
-/// Everything that admitting needs, on a map to localise in.
-class Admitting {
+/// What a budget is spent on, on a map to localise in.
+class Budgeted {
  public:
-  Admitting(const MatcherConfig& config, std::size_t places)
+  Budgeted(const MatcherConfig& config, std::size_t places)
       : config_(config),
         drive_(oracle::drive(3, places, 8)),
         map_(map_of(drive_, config)),
         trajectories_(memory_.arena, config.sequence_length, config.vmin, config.vmax),
         slices_(memory_.arena, config, config.sequence_length + 1, {places, 8}),
-        admitted_(memory_.arena, config) {}
+        budget_(memory_.arena, config) {}
 
   void next_frame() {
     slices_.push(drive_[static_cast<std::size_t>(slices_.frames()) % drive_.size()]);
-    admitted_.clear();
+    budget_.clear();
   }
 
   /// @param began the first frame that belongs together with the newest
-  void admit(CandidateRun range, std::uint64_t began = 0) {
-    admitted_.admit({&slices_, &map_, &trajectories_, began, slices_.frames(), map_.size()}, range);
+  void add(CandidateRun range, std::uint64_t began = 0) {
+    budget_.add({&slices_, &map_, &trajectories_, began, slices_.frames(), map_.size()}, range);
   }
 
   [[nodiscard]] std::size_t rows() const {
     std::size_t rows = 0;
-    for (const CandidateRun run : admitted_.runs()) rows += run.last - run.first;
+    for (const CandidateRun run : budget_.runs()) rows += run.last - run.first;
     return rows;
   }
 
   void expect_within_limits_and_complete() const {
-    EXPECT_LE(rows(), AdmittedRows::most_rows(config_));
-    EXPECT_LE(admitted_.distances(), distances_a_frame(config_));
+    EXPECT_LE(rows(), CandidateBudget::most_rows(config_));
+    EXPECT_LE(budget_.distances(), distances_a_frame(config_));
     const auto places = static_cast<std::int64_t>(map_.size());
     const std::uint64_t window = config_.sequence_length + 1;
-    for (const CandidateRun run : admitted_.runs()) {
+    for (const CandidateRun run : budget_.runs()) {
       for (std::size_t i = 0; i < window; ++i) {
         if (slices_.frames() + i < window) continue;
         for (std::size_t line = 0; line < trajectories_.count(); ++line) {
@@ -56,7 +56,7 @@ class Admitting {
     }
   }
 
-  [[nodiscard]] const AdmittedRows& admitted() const { return admitted_; }
+  [[nodiscard]] const CandidateBudget& budget() const { return budget_; }
 
  private:
   MatcherConfig config_;
@@ -65,7 +65,7 @@ class Admitting {
   TestArena memory_;
   Trajectories trajectories_;
   DifferenceSlices slices_;
-  AdmittedRows admitted_;
+  CandidateBudget budget_;
 };
 
 MatcherConfig relocalising(std::size_t ds) {
@@ -74,7 +74,7 @@ MatcherConfig relocalising(std::size_t ds) {
   return config;
 }
 
-TEST(AdmittedRows, AreCompleteAndWithinTheLimits) {
+TEST(CandidateBudget, AreCompleteAndWithinTheLimits) {
   std::size_t rows = 0;
   for (const std::size_t ds : {0U, 1U, 6U, 20U}) {
     for (const double vmax : {1.0, 1.2, 3.0}) {
@@ -86,17 +86,17 @@ TEST(AdmittedRows, AreCompleteAndWithinTheLimits) {
         config.enhance = enhance;
         config.relocalising.distances = 10 + 3 * ds + 10 + 7;
         ASSERT_TRUE(validate(config).empty());
-        Admitting admitting(config, 150);
+        Budgeted budgeted(config, 150);
         std::mt19937 random(static_cast<std::uint32_t>(ds) + 5);
         for (int frame = 0; frame < 120; ++frame) {
-          admitting.next_frame();
+          budgeted.next_frame();
           for (int range = 0; range < 8; ++range) {
             const std::size_t first = random() % 150;
-            admitting.admit({first, std::min<std::size_t>(150, first + 1 + random() % 25)});
+            budgeted.add({first, std::min<std::size_t>(150, first + 1 + random() % 25)});
           }
-          admitting.expect_within_limits_and_complete();
+          budgeted.expect_within_limits_and_complete();
           if (HasFatalFailure()) return;
-          rows += admitting.rows();
+          rows += budgeted.rows();
         }
       }
     }
@@ -105,7 +105,7 @@ TEST(AdmittedRows, AreCompleteAndWithinTheLimits) {
 }
 
 // The least that may be configured lets one range keep up with the robot, once it is there.
-TEST(AdmittedRows, TheLeastThatMayBeSpentKeepsUpWithOneRange) {
+TEST(CandidateBudget, TheLeastThatMayBeSpentKeepsUpWithOneRange) {
   for (const bool enhance : {false, true}) {
     for (const std::size_t ds : {0U, 5U, 20U, 60U}) {
       MatcherConfig config = relocalising(ds);
@@ -113,41 +113,41 @@ TEST(AdmittedRows, TheLeastThatMayBeSpentKeepsUpWithOneRange) {
       const std::size_t spread = static_cast<std::size_t>(std::ceil(0.4 * static_cast<double>(ds)));
       config.relocalising.distances = config.num + 1 + spread + (enhance ? config.rwindow : 0);
       ASSERT_TRUE(validate(config).empty());
-      Admitting admitting(config, 500);
+      Budgeted budgeted(config, 500);
       std::size_t last = 0;
       for (std::size_t frame = 0; frame < 400; ++frame) {
-        admitting.next_frame();
+        budgeted.next_frame();
         const std::size_t row = frame + 50;
-        admitting.admit({row - config.num / 2, row + config.num / 2 + 1});
-        admitting.expect_within_limits_and_complete();
+        budgeted.add({row - config.num / 2, row + config.num / 2 + 1});
+        budgeted.expect_within_limits_and_complete();
         if (HasFatalFailure()) return;
-        last = admitting.rows();
+        last = budgeted.rows();
       }
       EXPECT_EQ(last, config.num + 1) << "ds " << ds << ", enhance " << enhance;
     }
   }
 }
 
-TEST(AdmittedRows, WhatOneFrameBeginsTheNextOnesFinish) {
+TEST(CandidateBudget, WhatOneFrameBeginsTheNextOnesFinish) {
   MatcherConfig config = relocalising(20);
-  Admitting admitting(config, 500);
-  for (int frame = 0; frame < 100; ++frame) admitting.next_frame();
+  Budgeted budgeted(config, 500);
+  for (int frame = 0; frame < 100; ++frame) budgeted.next_frame();
   std::size_t frames = 0;
   do {
-    admitting.next_frame();
+    budgeted.next_frame();
     const std::size_t row = 200 + frames;
-    admitting.admit({row - 8, row + 9});
+    budgeted.add({row - 8, row + 9});
     ++frames;
-  } while (admitting.rows() < 17 && frames < 50);
+  } while (budgeted.rows() < 17 && frames < 50);
   EXPECT_LE(frames, 3U);
 }
 
-TEST(AdmittedRows, WithoutRelocalisingNothingIsTurnedAway) {
+TEST(CandidateBudget, WithoutRelocalisingNothingIsTurnedAway) {
   MatcherConfig config = paper(Candidates::ranges, 20);
-  Admitting admitting(config, 500);
-  for (int frame = 0; frame < 21; ++frame) admitting.next_frame();
-  admitting.admit({0, 500});
-  EXPECT_EQ(admitting.rows(), 500U);
+  Budgeted budgeted(config, 500);
+  for (int frame = 0; frame < 21; ++frame) budgeted.next_frame();
+  budgeted.add({0, 500});
+  EXPECT_EQ(budgeted.rows(), 500U);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "synthetic/made_places.hpp"
+#include "synthetic/places.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,12 @@ void spread(std::uint64_t number, std::span<float> out) {
 
 }  // namespace
 
-MadePlaces::MadePlaces(std::size_t size)
+SyntheticPlaces::SyntheticPlaces(std::size_t size)
     : directions_{Direction{none, std::vector<float>(size)},
                   Direction{none, std::vector<float>(size)}},
       noise_(size) {}
 
-std::span<const float> MadePlaces::direction(std::uint64_t number) {
+std::span<const float> SyntheticPlaces::direction(std::uint64_t number) {
   Direction& direction = directions_[static_cast<std::size_t>(number % directions_.size())];
   if (direction.number != number) {
     spread(number, direction.values);
@@ -54,7 +54,7 @@ std::span<const float> MadePlaces::direction(std::uint64_t number) {
   return direction.values;
 }
 
-void MadePlaces::see(double position, float noise, std::span<float> out) {
+void SyntheticPlaces::see(double position, float noise, std::span<float> out) {
   const double way = position / places_a_direction;
   const auto number = static_cast<std::uint64_t>(way);
   const std::span<const float> from = direction(number);
@@ -70,7 +70,7 @@ void MadePlaces::see(double position, float noise, std::span<float> out) {
   normalise(out);
 }
 
-double MadeRobot::next() {
+double SyntheticRobot::next() {
   const auto end = static_cast<double>(places_ - 1);
   if (frames_ % frames_a_velocity == 0) {
     velocity_ = std::uniform_real_distribution(0.9, 1.1)(random_);

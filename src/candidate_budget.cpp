@@ -1,9 +1,9 @@
-#include "seqloop/detail/admitted_rows.hpp"
+#include "seqloop/detail/candidate_budget.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/detail/candidate_proposals.hpp"
 
 namespace seqloop {
 namespace {
@@ -14,13 +14,13 @@ constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 std::size_t most_runs(const MatcherConfig& config) {
   if (config.candidates == Candidates::all) return 1;
   const std::size_t k = config.candidates == Candidates::adaptive ? config.initial_k : config.k;
-  return k + (relocalises(config) ? PromisingRows::most : 0);
+  return k + (relocalises(config) ? CandidateProposals::most : 0);
 }
 
 /// Visits the cells that lines through the run can touch, the newest first, until one says false:
 /// visit(frame, first row, last row).
 template <class Visit>
-bool for_each_column(const AdmittedRows::Window& window, CandidateRun run, Visit visit) {
+bool for_each_column(const CandidateBudget::Window& window, CandidateRun run, Visit visit) {
   const Trajectories& lines = *window.trajectories;
   const auto first_row = static_cast<std::int64_t>(run.first);
   const auto last_row = static_cast<std::int64_t>(run.last);
@@ -41,19 +41,19 @@ bool for_each_column(const AdmittedRows::Window& window, CandidateRun run, Visit
 
 }  // namespace
 
-AdmittedRows::AdmittedRows(Arena& arena, const MatcherConfig& config)
+CandidateBudget::CandidateBudget(Arena& arena, const MatcherConfig& config)
     : limited_(relocalises(config)),
       most_rows_(limited_ ? most_rows(config) : any),
       most_distances_(limited_ ? distances_a_frame(config) : any),
       runs_(arena, most_runs(config)) {}
 
-void AdmittedRows::clear() noexcept {
+void CandidateBudget::clear() noexcept {
   runs_.clear();
   rows_ = 0;
   distances_ = 0;
 }
 
-void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
+void CandidateBudget::add(const Window& window, CandidateRun range) noexcept {
   if (rows_ == most_rows_) return;
   // With nothing left to spend, only what is there already can come in.
   if (distances_ == most_distances_ && !complete(window, range)) return;
@@ -80,7 +80,8 @@ void AdmittedRows::admit(const Window& window, CandidateRun range) noexcept {
   }
 }
 
-AdmittedRows::Cost AdmittedRows::cost(const Window& window, CandidateRun range) const noexcept {
+CandidateBudget::Cost CandidateBudget::cost(const Window& window,
+                                            CandidateRun range) const noexcept {
   Cost sum;
   runs_.for_each_outside(range, [&](CandidateRun part) {
     sum.rows += part.last - part.first;
@@ -92,7 +93,7 @@ AdmittedRows::Cost AdmittedRows::cost(const Window& window, CandidateRun range) 
   return sum;
 }
 
-bool AdmittedRows::complete(const Window& window, CandidateRun range) const noexcept {
+bool CandidateBudget::complete(const Window& window, CandidateRun range) const noexcept {
   bool complete = true;
   runs_.for_each_outside(range, [&](CandidateRun part) {
     complete = complete &&
@@ -104,7 +105,7 @@ bool AdmittedRows::complete(const Window& window, CandidateRun range) const noex
   return complete;
 }
 
-void AdmittedRows::compute(const Window& window, CandidateRun range, bool fits) noexcept {
+void CandidateBudget::compute(const Window& window, CandidateRun range, bool fits) noexcept {
   runs_.for_each_outside(range, [&](CandidateRun part) {
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
       // A column is computed whole, or left to the next frames.

@@ -8,7 +8,7 @@ namespace seqloop::kernels {
 
 /// A variant that has all of its own.
 template <class Products, class Differences, class Lanes>
-constexpr IntegerKernels made_of(std::string_view name, bool (*supported)() noexcept) noexcept {
+constexpr IntegerKernels composed_of(std::string_view name, bool (*supported)() noexcept) noexcept {
   return {name,
           supported,
           &dot<Products>,

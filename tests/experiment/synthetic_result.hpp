@@ -10,8 +10,8 @@ namespace seqloop::experiment {
 
 /// A result whose answers are right up to a recall, and then wrong ones come between.
 /// @param recall_at_100_precision in (0, 1]; 0 for a result without answers
-inline Result made_up(std::string pair, std::string method, std::string descriptor,
-                      std::vector<Setting> settings, double recall_at_100_precision) {
+inline Result synthetic_result(std::string pair, std::string method, std::string descriptor,
+                               std::vector<Setting> settings, double recall_at_100_precision) {
   Result result;
   result.pair = std::move(pair);
   result.method = std::move(method);

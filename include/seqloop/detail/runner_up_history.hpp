@@ -10,15 +10,15 @@
 
 namespace seqloop {
 
-/// Rows that looked good at the last frames. A frame that looks at one slice of a large map sees
-/// only some of the rows that rival its best one, and would be too sure of it; the frames before,
-/// whose windows overlap with its own, saw the others.
-class PastRivals {
+/// Rows that looked good at the last frames. A frame that scans a part of a large map sees only
+/// some of the rows that come close to its best one, and would be too sure of it; the frames
+/// before, whose windows overlap with its own, saw the others.
+class RunnerUpHistory {
  public:
   /// Allocates: from the arena only.
-  PastRivals(Arena& arena, const MatcherConfig& config);
+  RunnerUpHistory(Arena& arena, const MatcherConfig& config);
 
-  struct Rival {
+  struct RunnerUp {
     std::size_t row;
     double score;
   };
@@ -27,16 +27,16 @@ class PastRivals {
   void next() noexcept { ++now_; }
 
   /// @param best        the frame's best row
-  /// @param half_window rows around it that are no rivals
-  /// @param rows        rows of the map that may be searched: where one slice holds them all, the
-  /// frame has seen all rivals itself
-  /// @return the lowest score of the last frames' rivals; none where there is none
+  /// @param half_window rows around it that cannot be the runner-up
+  /// @param rows        rows of the map that may be searched: where one scan takes them all, the
+  /// frame has seen every one of them itself
+  /// @return the lowest score of the last frames' rows; none where there is none
   /// Work: ds rows at most. Allocates: never.
   [[nodiscard]] std::optional<double> lowest(std::size_t best, std::size_t half_window,
                                              std::size_t rows) const noexcept;
 
   /// Remembers a row of this frame, at most two of them.
-  void remember(Rival rival) noexcept;
+  void remember(RunnerUp row) noexcept;
 
   /// Frames went by unseen.
   void skip(std::uint64_t frames) noexcept { now_ += frames; }
@@ -50,10 +50,10 @@ class PastRivals {
  private:
   struct Seen {
     std::uint64_t frame;
-    Rival rival;
+    RunnerUp row;
   };
 
-  std::size_t slice_;
+  std::size_t rows_a_scan_;
   std::uint64_t now_ = 0;
   std::uint64_t remembered_ = 0;  // ever, since the last restart
   std::span<Seen> seen_;          // [ds], a ring

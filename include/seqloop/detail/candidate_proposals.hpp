@@ -11,27 +11,27 @@
 
 namespace seqloop {
 
-/// Keeps an eye on the whole map, so that a robot that has been carried elsewhere, or whose way
-/// joins an earlier one, is found again without ever searching all rows: each frame looks at one
-/// slice of the map, by sketches of a few of the newest frames, and remembers the rows that look
-/// most alike. What is remembered is looked at again at every frame, and moves along with the
+/// Proposes candidates from the whole map, so that a robot that has been carried elsewhere, or
+/// whose path joins an earlier one, is found again without ever searching all rows. Each frame
+/// scans a part of the map, by sketches of a few of the newest frames, and remembers the rows that
+/// look most alike. Remembered rows are looked at again at every frame, and move along with the
 /// robot.
-class PromisingRows {
+class CandidateProposals {
  public:
   /// How many are remembered.
   static constexpr std::size_t most = 16;
 
   /// Allocates: from the arena only.
-  PromisingRows(Arena& arena, const MatcherConfig& config, std::size_t places);
+  CandidateProposals(Arena& arena, const MatcherConfig& config, std::size_t places);
 
   /// Pairs of sketches that one call compares.
   struct Looks {
-    std::size_t scanned;  ///< by their first words, over the slice
+    std::size_t scanned;  ///< by their first words, in the scan
     std::size_t closely;  ///< by more of them
   };
   [[nodiscard]] static Looks most_looks(const MatcherConfig& config, std::size_t places) noexcept;
 
-  /// Looks again at what is remembered, then at the next slice.
+  /// Looks again at what is remembered, then scans the next rows.
   /// @param rows   rows of the map that may be searched
   /// @param oldest the oldest frame that belongs together with the newest
   /// Work: what it returns. Allocates: never.
@@ -39,17 +39,17 @@ class PromisingRows {
              std::uint64_t oldest) noexcept;
 
   /// A line that the frames of the window may have taken through the map.
-  struct Promise {
+  struct Proposal {
     double difference;   ///< about the mean difference along it, as its sketches tell; 0 .. 2
     std::size_t centre;  ///< the row at the window's centre column
   };
 
   /// @return the most alike first
-  [[nodiscard]] std::span<const Promise> promises() const noexcept {
-    return promises_.first(count_);
+  [[nodiscard]] std::span<const Proposal> proposals() const noexcept {
+    return proposals_.first(count_);
   }
 
-  /// Frames went by unseen: what is remembered is taken to lie so many rows further on.
+  /// Frames went by unseen: each moves what is remembered one row further on.
   void skip(std::uint64_t frames) noexcept;
 
   /// A row went from the map: those behind it are counted one lower.
@@ -65,12 +65,11 @@ class PromisingRows {
     std::size_t row;
   };
 
-  [[nodiscard]] std::span<const Alike> best_of_slice(const DifferenceSlices& slices,
-                                                     const PlaceMap& map,
-                                                     std::size_t rows) noexcept;
+  [[nodiscard]] std::span<const Alike> best_of_scan(const DifferenceSlices& slices,
+                                                    const PlaceMap& map, std::size_t rows) noexcept;
   void look_closely(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
                     std::size_t row) noexcept;
-  void bring(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept;
+  void prefetch(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept;
   void scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
             std::span<std::uint32_t> bits) noexcept;
   [[nodiscard]] std::uint32_t differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
@@ -87,18 +86,18 @@ class PromisingRows {
                                       std::size_t reach) noexcept;
 
   std::size_t ds_;
-  std::size_t slice_;
-  std::size_t near_;        // rows within which there is one promise
-  std::size_t next_ = 0;    // row that the next slice begins at
+  std::size_t rows_a_scan_;
+  std::size_t near_;        // rows within which only one is remembered
+  std::size_t next_ = 0;    // row that the next scan begins at
   std::size_t frames_ = 0;  // newest frames that are looked at now
   std::size_t scanned_ = 0;
   std::size_t sketches_ = 0;
   std::size_t count_ = 0;
   std::span<Alike> remembered_;    // [most], best first
-  std::span<Alike> best_;          // of the slice, best first
-  std::span<Promise> promises_;    // [most], what is remembered along the window, best first
-  std::span<std::uint32_t> bits_;  // [slice] of the newest frame
-  // [lines, ds + 1]: rows that a line lies behind its newest one, so many frames before the newest
+  std::span<Alike> best_;          // of the scan, best first
+  std::span<Proposal> proposals_;  // [most], what is remembered along the window, best first
+  std::span<std::uint32_t> bits_;  // [rows_a_scan] of the newest frame
+  // [lines, ds + 1]: how many rows before its newest one a line is, that many frames earlier
   std::span<std::uint32_t> behind_;
 };
 

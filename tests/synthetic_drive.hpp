@@ -13,9 +13,9 @@
 namespace seqloop::test {
 
 /// A drive of pictures in memory; an empty one cannot be read.
-class MadeDrive : public FrameSource {
+class SyntheticDrive : public FrameSource {
  public:
-  explicit MadeDrive(std::vector<cv::Mat> pictures, double frames_per_second = 10.0)
+  explicit SyntheticDrive(std::vector<cv::Mat> pictures, double frames_per_second = 10.0)
       : pictures_(std::move(pictures)), frames_per_second_(frames_per_second) {}
 
   Grab grab(Frame& frame) noexcept override {

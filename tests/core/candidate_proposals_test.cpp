@@ -1,5 +1,5 @@
 // The whole map is in sight: how soon each row is looked at, and how soon a carried robot is found.
-#include "seqloop/detail/promising_rows.hpp"
+#include "seqloop/detail/candidate_proposals.hpp"
 
 #include <algorithm>
 #include <random>
@@ -10,110 +10,110 @@
 namespace seqloop {
 namespace {
 
-MatcherConfig sketched(Use use, std::size_t slice) {
+MatcherConfig sketched(Use use, std::size_t scanned) {
   MatcherConfig config = paper(Candidates::adaptive, 0, use);
   config.arithmetic = Arithmetic::int8;
   config.relocalising.on = true;
-  config.relocalising.slice = slice;
+  config.relocalising.rows_scanned = scanned;
   return config;
 }
 
-bool promised(const PromisingRows& promising, std::size_t row) {
-  return std::ranges::any_of(promising.promises(), [&](const PromisingRows::Promise& promise) {
-    return promise.centre == row && promise.difference == 0.0;
+bool proposed(const CandidateProposals& proposals, std::size_t row) {
+  return std::ranges::any_of(proposals.proposals(), [&](const CandidateProposals::Proposal& proposal) {
+    return proposal.centre == row && proposal.difference == 0.0;
   });
 }
 
-TEST(PromisingRows, LookAtEveryRowOnceInASliceLongRound) {
+TEST(CandidateProposals, LookAtEveryRowOnceInARound) {
   constexpr std::size_t places = 100;
   const oracle::Vectors drive = oracle::drive(1, places, 32);
-  for (const std::size_t slice : {2U, 7U, 33U, 50U, 99U, 100U, 4096U}) {
-    const MatcherConfig config = sketched(Use::localise, slice);
+  for (const std::size_t scanned : {2U, 7U, 33U, 50U, 99U, 100U, 4096U}) {
+    const MatcherConfig config = sketched(Use::localise, scanned);
     const PlaceMap map = map_of(drive, config);
     TestArena memory;
     DifferenceSlices slices(memory.arena, config, 12, {places, 32});
-    PromisingRows promising(memory.arena, config, places);
-    const std::size_t round = (places + slice - 1) / slice;
+    CandidateProposals proposals(memory.arena, config, places);
+    const std::size_t round = (places + scanned - 1) / scanned;
     for (std::size_t row = 0; row < places; ++row) {
       slices.push(drive[row]);
-      promising.restart();
+      proposals.restart();
       for (std::size_t frame = 0; frame < round; ++frame) {
-        const auto looks = promising.look(slices, map, places, slices.frames() - 1);
-        EXPECT_LE(looks.scanned, PromisingRows::most_looks(config, places).scanned);
-        EXPECT_LE(looks.closely, PromisingRows::most_looks(config, places).closely);
+        const auto looks = proposals.look(slices, map, places, slices.frames() - 1);
+        EXPECT_LE(looks.scanned, CandidateProposals::most_looks(config, places).scanned);
+        EXPECT_LE(looks.closely, CandidateProposals::most_looks(config, places).closely);
       }
-      EXPECT_TRUE(promised(promising, row)) << "row " << row << ", slice " << slice;
+      EXPECT_TRUE(proposed(proposals, row)) << "row " << row << ", scanned " << scanned;
     }
   }
 }
 
-// While the map grows by a row a frame, or loses one, so many rows less of a slice are gained.
-std::size_t round_of_a_moving_map(std::size_t places, std::size_t slice) {
-  return (places + slice - 2) / (slice - 1) + 1;
+// While the map grows by a row a frame, or loses one, each scan gains one row less.
+std::size_t round_of_a_moving_map(std::size_t places, std::size_t scanned) {
+  return (places + scanned - 2) / (scanned - 1) + 1;
 }
 
-TEST(PromisingRows, LookAtEveryRowWhileTheMapGrows) {
+TEST(CandidateProposals, LookAtEveryRowWhileTheMapGrows) {
   constexpr std::size_t places = 300;
   const oracle::Vectors drive = oracle::drive(2, places, 32);
-  for (const std::size_t slice : {2U, 7U, 33U, 64U}) {
-    const MatcherConfig config = sketched(Use::localise, slice);
+  for (const std::size_t scanned : {2U, 7U, 33U, 64U}) {
+    const MatcherConfig config = sketched(Use::localise, scanned);
     const PlaceMap map = map_of(drive, config);
     for (std::size_t row = 0; row < 80; row += 3) {
       TestArena memory;
       DifferenceSlices slices(memory.arena, config, 12, {places, 32});
-      PromisingRows promising(memory.arena, config, places);
+      CandidateProposals proposals(memory.arena, config, places);
       slices.push(drive[row]);
       std::size_t rows = 80;
-      for (std::size_t frame = 0; frame < row; ++frame) {  // wherever the slices have come to
-        static_cast<void>(promising.look(slices, map, rows++, 0));
+      for (std::size_t frame = 0; frame < row; ++frame) {  // wherever the scan has come to
+        static_cast<void>(proposals.look(slices, map, rows++, 0));
       }
-      promising.restart();
-      const std::size_t round = round_of_a_moving_map(rows, slice);
+      proposals.restart();
+      const std::size_t round = round_of_a_moving_map(rows, scanned);
       for (std::size_t frame = 0; frame < round; ++frame) {
-        static_cast<void>(promising.look(slices, map, std::min(rows++, places), 0));
+        static_cast<void>(proposals.look(slices, map, std::min(rows++, places), 0));
       }
-      EXPECT_TRUE(promised(promising, row)) << "row " << row << ", slice " << slice;
+      EXPECT_TRUE(proposed(proposals, row)) << "row " << row << ", scanned " << scanned;
     }
   }
 }
 
-TEST(PromisingRows, LookAtEveryRowWhilePlacesGo) {
+TEST(CandidateProposals, LookAtEveryRowWhilePlacesGo) {
   constexpr std::size_t places = 60;
   const oracle::Vectors drive = oracle::drive(3, 400, 32);
   for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
-    for (const std::size_t slice : {7U, 16U, 59U, 60U}) {
-      MatcherConfig config = sketched(Use::close_loops, slice);
+    for (const std::size_t scanned : {7U, 16U, 59U, 60U}) {
+      MatcherConfig config = sketched(Use::close_loops, scanned);
       config.full_map = full_map;
       config.exclude = 1;
       PlaceMap map(config, {places, 32});
       TestArena memory;
       DifferenceSlices slices(memory.arena, config, 12, {places, 32});
-      PromisingRows promising(memory.arena, config, places);
+      CandidateProposals proposals(memory.arena, config, places);
       const auto take = [&](std::size_t frame) {
         slices.push(drive[frame]);
         const auto taken = map.take(slices.queries(), slices.row_of(slices.frames() - 1), 1);
-        if (taken.removed) promising.removed(*taken.removed);
+        if (taken.removed) proposals.removed(*taken.removed);
       };
       std::size_t frame = 0;
       for (; frame < places; ++frame) take(frame);
-      const std::size_t round = round_of_a_moving_map(places, slice);
+      const std::size_t round = round_of_a_moving_map(places, scanned);
       std::size_t found = 0;
       for (std::size_t sought = 0; frame + round < drive.size(); ++sought) {
         const std::uint64_t number = map.order().number((7 * sought) % places);
-        promising.restart();
+        proposals.restart();
         bool seen = false;
         bool gone = false;
         for (std::size_t look = 0; look < round && !seen; ++look) {
           take(frame++);
           // Compared as if the robot were at the place again.
           slices.push(drive[static_cast<std::size_t>(number)]);
-          static_cast<void>(promising.look(slices, map, places, slices.frames() - 1));
+          static_cast<void>(proposals.look(slices, map, places, slices.frames() - 1));
           std::size_t row = 0;
           while (row < places && map.order().number(row) != number) ++row;
           gone = row == places;
-          seen = !gone && promised(promising, row);
+          seen = !gone && proposed(proposals, row);
         }
-        EXPECT_TRUE(seen || gone) << "slice " << slice << ", number " << number;
+        EXPECT_TRUE(seen || gone) << "scanned " << scanned << ", number " << number;
         found += seen;
       }
       EXPECT_GT(found, 15U);
@@ -121,26 +121,26 @@ TEST(PromisingRows, LookAtEveryRowWhilePlacesGo) {
   }
 }
 
-TEST(PromisingRows, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
+TEST(CandidateProposals, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
   const oracle::Vectors drive = oracle::drive(4, 100, 32);
   const MatcherConfig config = sketched(Use::localise, 2);
   const PlaceMap map = map_of(drive, config);
   TestArena memory;
   DifferenceSlices slices(memory.arena, config, 12, {100, 32});
-  PromisingRows promising(memory.arena, config, 100);
+  CandidateProposals proposals(memory.arena, config, 100);
   slices.push(drive[40]);
   for (std::size_t row = 0; row <= 40; row += 2) {
-    static_cast<void>(promising.look(slices, map, 100, 0));
+    static_cast<void>(proposals.look(slices, map, 100, 0));
   }
-  ASSERT_TRUE(promised(promising, 40));
-  promising.removed(99);
-  for (int place = 0; place < 10; ++place) promising.removed(0);
-  promising.skip(9);
-  // 40 less 10 that went, 9 frames and this one further on; the slice is far from it.
-  static_cast<void>(promising.look(slices, map, 100, 0));
-  EXPECT_TRUE(promised(promising, 40));
-  promising.restart();
-  EXPECT_TRUE(promising.promises().empty());
+  ASSERT_TRUE(proposed(proposals, 40));
+  proposals.removed(99);
+  for (int place = 0; place < 10; ++place) proposals.removed(0);
+  proposals.skip(9);
+  // 40 less 10 that went, 9 frames and this one further on; the scanned is far from it.
+  static_cast<void>(proposals.look(slices, map, 100, 0));
+  EXPECT_TRUE(proposed(proposals, 40));
+  proposals.restart();
+  EXPECT_TRUE(proposals.proposals().empty());
 }
 
 /// How many frames after being put down a robot is found: from then on its answers stay right.
@@ -206,10 +206,10 @@ TEST_P(Carried, IsFoundAgainSoonAtAnySpeed) {
           "(most) frames, %zu of 50 not\n",
           speed, vmin, vmax, told ? "told" : "not told", found.after.front(),
           found.after[found.after.size() / 2], found.after.back(), found.lost);
-      const std::size_t slices =
-          (places + config.relocalising.slice - 1) / config.relocalising.slice;
+      const std::size_t scans =
+          (places + config.relocalising.rows_scanned - 1) / config.relocalising.rows_scanned;
       EXPECT_EQ(found.lost, 0U);
-      EXPECT_LE(found.after.back(), config.sequence_length + 1 + slices);
+      EXPECT_LE(found.after.back(), config.sequence_length + 1 + scans);
     }
   }
 }
