@@ -78,40 +78,40 @@ CandidateProposals::Looks CandidateProposals::most_looks(const MatcherConfig& co
           most * (lines_tried * (pieces_tried + 1) + config.sequence_length / frames_between + 1)};
 }
 
-CandidateProposals::Looks CandidateProposals::look(const DifferenceSlices& slices,
-                                                   const PlaceMap& map, std::size_t rows,
+CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, const PlaceMap& map,
+                                                   std::size_t rows,
                                                    std::uint64_t oldest) noexcept {
   scanned_ = 0;
   sketches_ = 0;
-  const std::uint64_t newest = slices.frames() - 1;
+  const std::uint64_t newest = queries.newest();
   frames_ = std::min<std::size_t>(frames_looked_at,
                                   static_cast<std::size_t>((newest - oldest) / frames_apart) + 1);
 
   const std::size_t before = std::exchange(count_, 0);
   for (std::size_t i = 0; i < before; ++i) {
     // What is remembered goes where count_ is or before, which has been read already.
-    look_closely(slices, map, rows, remembered_[i].row + 1);
+    look_closely(queries, map, rows, remembered_[i].row + 1);
   }
-  const std::span<const Alike> found = best_of_scan(slices, map, rows);
+  const std::span<const Alike> found = best_of_scan(queries, map, rows);
   for (const Alike& best : found) prefetch(map, rows, best.row);
   for (const Alike& best : found) {
-    look_closely(slices, map, rows, best.row);
+    look_closely(queries, map, rows, best.row);
   }
-  weigh(slices, map, rows, oldest);
+  weigh(queries, map, rows, oldest);
   return {scanned_, sketches_};
 }
 
 /// The rows of the next scan that look most like the newest frame, one at most of each group of
 /// neighbours.
 std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
-    const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows) noexcept {
+    const QueryHistory& queries, const PlaceMap& map, std::size_t rows) noexcept {
   if (rows == 0) return {};
   // Scans go round: after the last row comes the first, and none is longer than the map.
   const std::size_t begin = next_ % rows;
   const std::span<std::uint32_t> bits = bits_.first(std::min(rows_a_scan_, rows));
   const std::size_t to_the_end = std::min(bits.size(), rows - begin);
-  scan(slices, map, begin, bits.first(to_the_end));
-  scan(slices, map, 0, bits.subspan(to_the_end));
+  scan(queries, map, begin, bits.first(to_the_end));
+  scan(queries, map, 0, bits.subspan(to_the_end));
   next_ = (begin + bits.size()) % rows;
   std::size_t found = 0;
   for (std::size_t first = 0; first < bits.size(); first += neighbours) {
@@ -127,18 +127,18 @@ std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
 }
 
 /// Compares the newest frame with consecutive rows.
-void CandidateProposals::scan(const DifferenceSlices& slices, const PlaceMap& map,
-                              std::size_t first, std::span<std::uint32_t> bits) noexcept {
-  const std::size_t query = slices.row_of(slices.frames() - 1);
+void CandidateProposals::scan(const QueryHistory& queries, const PlaceMap& map, std::size_t first,
+                              std::span<std::uint32_t> bits) noexcept {
+  const std::size_t query = queries.row_of(queries.newest());
   map.order().in_slots(
       first, first + bits.size(), [&](std::size_t row, std::size_t slot, std::size_t count) {
-        map.rows().scan(slices.queries(), query, slot, bits.subspan(row - first, count));
+        map.rows().scan(queries.rows(), query, slot, bits.subspan(row - first, count));
       });
   scanned_ += bits.size();
 }
 
 /// Compares a row and those beside it with several frames, and remembers the best of them.
-void CandidateProposals::look_closely(const DifferenceSlices& slices, const PlaceMap& map,
+void CandidateProposals::look_closely(const QueryHistory& queries, const PlaceMap& map,
                                       std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
   Alike best{std::numeric_limits<std::uint32_t>::max(), row};
@@ -146,7 +146,7 @@ void CandidateProposals::look_closely(const DifferenceSlices& slices, const Plac
     std::uint32_t sum = 0;
     for (std::size_t frame = 0; frame < frames_; ++frame) {
       const std::size_t back = frame * frames_apart;
-      sum += differing_bits(slices, map, rows, back, r, back);
+      sum += differing_bits(queries, map, rows, back, r, back);
     }
     if (sum < best.bits) best = {sum, r};
   }
@@ -165,13 +165,12 @@ void CandidateProposals::prefetch(const PlaceMap& map, std::size_t rows,
 
 /// Differing bits of the frame `back` frames before the newest and the row `behind` rows before
 /// `row`; a row that is not there differs as much as by chance.
-std::uint32_t CandidateProposals::differing_bits(const DifferenceSlices& slices,
-                                                 const PlaceMap& map, std::size_t rows,
-                                                 std::size_t back, std::size_t row,
-                                                 std::size_t behind) noexcept {
+std::uint32_t CandidateProposals::differing_bits(const QueryHistory& queries, const PlaceMap& map,
+                                                 std::size_t rows, std::size_t back,
+                                                 std::size_t row, std::size_t behind) noexcept {
   if (behind > row || row - behind >= rows) return chance;
   ++sketches_;
-  return map.rows().look_closely(slices.queries(), slices.row_of(slices.frames() - 1 - back),
+  return map.rows().look_closely(queries.rows(), queries.row_of(queries.newest() - back),
                                  map.order().slot(row - behind));
 }
 
@@ -191,16 +190,16 @@ void CandidateProposals::remember(Alike alike) noexcept {
 }
 
 /// Weighs what is remembered along the whole window.
-void CandidateProposals::weigh(const DifferenceSlices& slices, const PlaceMap& map,
-                               std::size_t rows, std::uint64_t oldest) noexcept {
+void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
+                               std::uint64_t oldest) noexcept {
   const auto reach =
-      static_cast<std::size_t>(std::min<std::uint64_t>(slices.frames() - 1 - oldest, ds_));
+      static_cast<std::size_t>(std::min<std::uint64_t>(queries.newest() - oldest, ds_));
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t row = remembered_[i].row;
-    const std::size_t line = best_line(slices, map, rows, row, reach);
+    const std::size_t line = best_line(queries, map, rows, row, reach);
     std::uint32_t bits = 0;
     for (std::size_t back = 0; back <= reach; back += frames_between) {
-      bits += differing_bits(slices, map, rows, back, row, rows_behind(line, back));
+      bits += differing_bits(queries, map, rows, back, row, rows_behind(line, back));
     }
     const std::size_t frames = reach / frames_between + 1;
     const Proposal proposal{
@@ -211,7 +210,7 @@ void CandidateProposals::weigh(const DifferenceSlices& slices, const PlaceMap& m
 }
 
 /// Of the lines that end at a row, the one that looks most alike at a few frames of the window.
-std::size_t CandidateProposals::best_line(const DifferenceSlices& slices, const PlaceMap& map,
+std::size_t CandidateProposals::best_line(const QueryHistory& queries, const PlaceMap& map,
                                           std::size_t rows, std::size_t row,
                                           std::size_t reach) noexcept {
   std::array<std::uint32_t, lines_tried> sums{};
@@ -223,7 +222,7 @@ std::size_t CandidateProposals::best_line(const DifferenceSlices& slices, const 
       // Lines that are still together at this frame look at the same row.
       const std::size_t behind = rows_behind(line, back);
       if (line == 0 || behind != rows_behind(line - 1, back)) {
-        bits = differing_bits(slices, map, rows, back, row, behind);
+        bits = differing_bits(queries, map, rows, back, row, behind);
       }
       sums[line] += bits;
     }

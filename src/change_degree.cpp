@@ -4,12 +4,12 @@
 
 namespace seqloop {
 
-double ChangeDegree::advance(const DifferenceSlices& slices, std::uint64_t frame) noexcept {
+double ChangeDegree::advance(const QueryHistory& queries, std::uint64_t frame) noexcept {
   distances_ = 0;
   if (frame < reach) return 1.0;
   double sum = 0.0;
   for (std::uint64_t earlier = frame - reach; earlier < frame; ++earlier) {
-    sum += static_cast<double>(slices.between(frame, earlier));
+    sum += static_cast<double>(queries.between(frame, earlier));
     ++distances_;
   }
   // The denominator of Eq. (4) is the numerator of the frame before.

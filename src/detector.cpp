@@ -50,7 +50,7 @@ Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descript
 /// Query descriptors that must be kept: the window's, and what the change degree of its centre
 /// looks back on. A whole number of what is taken at once, so that this lies in one piece unless
 /// some came by themselves.
-std::size_t history(const MatcherConfig& config) {
+std::size_t queries_kept(const MatcherConfig& config) {
   const std::size_t ds = config.sequence_length;
   const std::size_t kept = std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
   const std::size_t at_once = config.frames_at_once;
@@ -119,7 +119,8 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       map_(map),
       trajectories_(arena, config.sequence_length, config.vmin, config.vmax),
       statistics_(arena, capacity.descriptor_size),
-      slices_(arena, config, history(config), capacity),
+      queries_(arena, DescriptorForm(config, capacity.descriptor_size), queries_kept(config)),
+      slices_(arena, config, queries_, capacity),
       search_(arena, trajectories_, config, capacity.places),
       ranges_(arena, config),
       proposals_(arena, config, capacity.places),
@@ -128,7 +129,7 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
-  const std::uint64_t newest = slices_.frames();
+  const std::uint64_t newest = queries_.frames();
   const bool readable = take_query(descriptor);
   const bool became_place = config_.use == Use::localise || become_place();
   FrameReport report = answer(newest, readable);
@@ -144,7 +145,7 @@ void Detector::steps(std::span<const std::span<const float>> descriptors,
     for (std::size_t i = 0; i < descriptors.size(); ++i) reports[i] = step(descriptors[i]);
     return;
   }
-  const std::uint64_t first = slices_.frames();
+  const std::uint64_t first = queries_.frames();
   std::array<bool, DescriptorRows::most_at_once> readable;
   for (std::size_t i = 0; i < descriptors.size(); ++i) readable[i] = take_query(descriptors[i]);
   slices_.fill_newest(*map_, descriptors.size());
@@ -164,7 +165,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   const std::size_t rows =
       rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
   if (relocalises(config_)) {
-    const CandidateProposals::Looks looks = proposals_.look(slices_, *map_, rows, window_began_);
+    const CandidateProposals::Looks looks = proposals_.look(queries_, *map_, rows, window_began_);
     report.work.scanned = looks.scanned;
     report.work.sketches = looks.closely;
   }
@@ -189,7 +190,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   // Update: what the next frame starts from.
   double change = 1.0;
   if (config_.candidates == Candidates::adaptive) {
-    change = change_degree_.advance(slices_, *report.frame);
+    change = change_degree_.advance(queries_, *report.frame);
     report.work.distances += change_degree_.distances();
   }
   ranges_.update(search_.scores(), budget_.runs(), best ? std::optional(best->row) : std::nullopt,
@@ -198,12 +199,13 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
 }
 
 void Detector::skip(std::uint64_t frames) noexcept {
-  if (frames == 0 || slices_.frames() == 0) return;
+  if (frames == 0 || queries_.frames() == 0) return;
   if (frames > config_.sequence_length) {
     restart();
     return;
   }
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
+    queries_.push_again();
     slices_.repeat();
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
@@ -214,7 +216,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
 }
 
 void Detector::restart() noexcept {
-  window_began_ = slices_.frames();
+  window_began_ = queries_.frames();
   ranges_.restart();
   proposals_.restart();
   decision_.restart();
@@ -225,11 +227,11 @@ void Detector::restart() noexcept {
 /// the frame before when there is nothing to take.
 bool Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
-    slices_.push_again();
+    queries_.push_again();
     return false;
   }
   if (!config_.standardisation.on) {
-    slices_.push(descriptor);
+    queries_.push(descriptor);
     return true;
   }
   if (statistics_.frames() == 0) {
@@ -237,7 +239,7 @@ bool Detector::take_query(std::span<const float> descriptor) noexcept {
   }
   statistics_.follow(descriptor, config_.standardisation.horizon);
   statistics_.standardise(descriptor, standardised_);
-  slices_.push(standardised_);
+  queries_.push(standardised_);
   return true;
 }
 
@@ -246,7 +248,7 @@ bool Detector::become_place() noexcept {
   // Places that the newest frames still need as they were: those that are no candidates yet.
   const std::size_t keep = config_.exclude + config_.sequence_length;
   const PlaceMap::Taken taken =
-      map_->take(slices_.queries(), slices_.row_of(slices_.frames() - 1), keep);
+      map_->take(queries_.rows(), queries_.row_of(queries_.newest()), keep);
   if (taken.removed) {
     slices_.forget(*taken.slot);
     ranges_.removed(*taken.removed);
@@ -266,7 +268,7 @@ std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
     return static_cast<std::size_t>(std::min<std::uint64_t>(old, map_->size()));
   }
   // Every frame became a place, so numbers are frames; the newest ones are all there.
-  const std::uint64_t newer = slices_.frames() - std::min(old, slices_.frames());
+  const std::uint64_t newer = queries_.frames() - std::min(old, queries_.frames());
   return map_->size() - static_cast<std::size_t>(std::min<std::uint64_t>(newer, map_->size()));
 }
 

@@ -29,15 +29,13 @@ std::size_t margin_of(const MatcherConfig& config) {
 
 }  // namespace
 
-DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
-                                   const Capacity& capacity)
+DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config,
+                                   const QueryHistory& queries, const Capacity& capacity)
     : whole_(config.arithmetic != Arithmetic::float32),
       enhance_(config.enhance),
       contrast_(config.rwindow),
       unit_(unit_of(config, DescriptorForm(config, capacity.descriptor_size))),
-      history_(history),
-      queries_(arena, {"query descriptors", "lengths of query descriptors", "query sketches"},
-               DescriptorForm(config, capacity.descriptor_size), history),
+      queries_(&queries),
       exact_(arena, "difference slices", "filled parts of the slices",
              whole_ ? 0 : columns_of(config), capacity.places, margin_of(config)),
       enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
@@ -48,18 +46,8 @@ DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config, st
                       whole_ && enhance_ ? columns_of(config) : 0, capacity.places,
                       margin_of(config)) {}
 
-void DifferenceSlices::push(std::span<const float> descriptor) noexcept {
-  queries_.store(row_of(frames_++), descriptor);
-}
-
-void DifferenceSlices::push_again() noexcept {
-  const std::uint64_t frame = frames_++;
-  if (frame > 0) queries_.copy(row_of(frame), queries_, row_of(frame - 1));
-}
-
 void DifferenceSlices::repeat() noexcept {
-  push_again();
-  const std::uint64_t frame = frames_ - 1;
+  const std::uint64_t frame = queries_->newest();
   const auto repeat = [frame](auto& ring) { ring.repeat(frame); };
   if (whole_) {
     repeat(whole_differences_);
@@ -81,7 +69,7 @@ std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing
   map.order().in_slots(from, to, [&](std::size_t, std::size_t slot, std::size_t count) {
     computed +=
         differences.fill(frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
-          map.rows().compare(queries_, row_of(frame), begin, out);
+          map.rows().compare(queries_->rows(), queries_->row_of(frame), begin, out);
         });
   });
   if (enhance_) {
@@ -105,11 +93,11 @@ std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std
 
 void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexcept {
   std::array<std::span<std::uint16_t>, DescriptorRows::most_at_once> columns;
-  const std::uint64_t first = frames_ - count;
+  const std::uint64_t first = queries_->frames() - count;
   for (std::size_t i = 0; i < count; ++i) {
     columns[i] = whole_differences_.take_over(first + i, map.size());
   }
-  map.rows().compare(queries_, row_of(first), std::span(columns).first(count));
+  map.rows().compare(queries_->rows(), queries_->row_of(first), std::span(columns).first(count));
 }
 
 std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,

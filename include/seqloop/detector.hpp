@@ -13,6 +13,7 @@
 #include "seqloop/detail/change_degree.hpp"
 #include "seqloop/detail/difference_slices.hpp"
 #include "seqloop/detail/loop_decision.hpp"
+#include "seqloop/detail/query_history.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/detail/sequence_search.hpp"
 #include "seqloop/detail/trajectories.hpp"
@@ -80,14 +81,14 @@ class Detector {
   /// About what the newest step compared: its descriptor, standardised if that is on.
   /// @param out [map.rows().restored_size()]; at least one step must have been made
   void newest_query(std::span<float> out) const noexcept {
-    slices_.queries().restore(slices_.row_of(slices_.frames() - 1), out);
+    queries_.rows().restore(queries_.row_of(queries_.newest()), out);
   }
 
   /// The newest frame's column of the difference matrix.
   /// @param out [at most map.size()] below zero where nothing was computed (everywhere, where not
   ///   all rows are candidates, until a line needs it)
   void newest_column(std::span<float> out) const noexcept {
-    slices_.show(*map_, slices_.frames() - 1, out);
+    slices_.show(*map_, queries_.newest(), out);
   }
 
  private:
@@ -111,6 +112,7 @@ class Detector {
   std::uint64_t window_began_ = 0;  // the first frame that is matched together with the newest
   Trajectories trajectories_;
   RunningStatistics statistics_;
+  QueryHistory queries_;
   DifferenceSlices slices_;
   SequenceSearch search_;
   CandidateRanges ranges_;

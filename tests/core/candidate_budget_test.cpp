@@ -16,17 +16,18 @@ class Budgeted {
         drive_(oracle::drive(3, places, 8)),
         map_(map_of(drive_, config)),
         trajectories_(memory_.arena, config.sequence_length, config.vmin, config.vmax),
-        slices_(memory_.arena, config, config.sequence_length + 1, {places, 8}),
+        queries_(memory_.arena, DescriptorForm(config, 8), config.sequence_length + 1),
+        slices_(memory_.arena, config, queries_, {places, 8}),
         budget_(memory_.arena, config) {}
 
   void next_frame() {
-    slices_.push(drive_[static_cast<std::size_t>(slices_.frames()) % drive_.size()]);
+    queries_.push(drive_[static_cast<std::size_t>(queries_.frames()) % drive_.size()]);
     budget_.clear();
   }
 
   /// @param began the first frame that belongs together with the newest
   void add(CandidateRun range, std::uint64_t began = 0) {
-    budget_.add({&slices_, &map_, &trajectories_, began, slices_.frames(), map_.size()}, range);
+    budget_.add({&slices_, &map_, &trajectories_, began, queries_.frames(), map_.size()}, range);
   }
 
   [[nodiscard]] std::size_t rows() const {
@@ -42,13 +43,13 @@ class Budgeted {
     const std::uint64_t window = config_.sequence_length + 1;
     for (const CandidateRun run : budget_.runs()) {
       for (std::size_t i = 0; i < window; ++i) {
-        if (slices_.frames() + i < window) continue;
+        if (queries_.frames() + i < window) continue;
         for (std::size_t line = 0; line < trajectories_.count(); ++line) {
           for (std::size_t row = run.first; row < run.last; ++row) {
             const std::int64_t at = static_cast<std::int64_t>(row) + trajectories_.offsets(line)[i];
             if (at < 0 || at >= places) continue;
             const auto cell = static_cast<std::size_t>(at);
-            ASSERT_EQ(slices_.missing(map_, slices_.frames() + i - window, cell, cell + 1), 0U)
+            ASSERT_EQ(slices_.missing(map_, queries_.frames() + i - window, cell, cell + 1), 0U)
                 << "row " << row << ", column " << i;
           }
         }
@@ -64,6 +65,7 @@ class Budgeted {
   PlaceMap map_;
   TestArena memory_;
   Trajectories trajectories_;
+  QueryHistory queries_;
   DifferenceSlices slices_;
   CandidateBudget budget_;
 };

@@ -31,14 +31,14 @@ TEST(CandidateProposals, LookAtEveryRowOnceInARound) {
     const MatcherConfig config = sketched(Use::localise, scanned);
     const PlaceMap map = map_of(drive, config);
     TestArena memory;
-    DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+    QueryHistory queries(memory.arena, DescriptorForm(config, 32), 12);
     CandidateProposals proposals(memory.arena, config, places);
     const std::size_t round = (places + scanned - 1) / scanned;
     for (std::size_t row = 0; row < places; ++row) {
-      slices.push(drive[row]);
+      queries.push(drive[row]);
       proposals.restart();
       for (std::size_t frame = 0; frame < round; ++frame) {
-        const auto looks = proposals.look(slices, map, places, slices.frames() - 1);
+        const auto looks = proposals.look(queries, map, places, queries.newest());
         EXPECT_LE(looks.scanned, CandidateProposals::most_looks(config, places).scanned);
         EXPECT_LE(looks.closely, CandidateProposals::most_looks(config, places).closely);
       }
@@ -60,17 +60,17 @@ TEST(CandidateProposals, LookAtEveryRowWhileTheMapGrows) {
     const PlaceMap map = map_of(drive, config);
     for (std::size_t row = 0; row < 80; row += 3) {
       TestArena memory;
-      DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+      QueryHistory queries(memory.arena, DescriptorForm(config, 32), 12);
       CandidateProposals proposals(memory.arena, config, places);
-      slices.push(drive[row]);
+      queries.push(drive[row]);
       std::size_t rows = 80;
       for (std::size_t frame = 0; frame < row; ++frame) {  // wherever the scan has come to
-        static_cast<void>(proposals.look(slices, map, rows++, 0));
+        static_cast<void>(proposals.look(queries, map, rows++, 0));
       }
       proposals.restart();
       const std::size_t round = round_of_a_moving_map(rows, scanned);
       for (std::size_t frame = 0; frame < round; ++frame) {
-        static_cast<void>(proposals.look(slices, map, std::min(rows++, places), 0));
+        static_cast<void>(proposals.look(queries, map, std::min(rows++, places), 0));
       }
       EXPECT_TRUE(proposed(proposals, row)) << "row " << row << ", scanned " << scanned;
     }
@@ -87,11 +87,11 @@ TEST(CandidateProposals, LookAtEveryRowWhilePlacesGo) {
       config.exclude = 1;
       PlaceMap map(config, {places, 32});
       TestArena memory;
-      DifferenceSlices slices(memory.arena, config, 12, {places, 32});
+      QueryHistory queries(memory.arena, DescriptorForm(config, 32), 12);
       CandidateProposals proposals(memory.arena, config, places);
       const auto take = [&](std::size_t frame) {
-        slices.push(drive[frame]);
-        const auto taken = map.take(slices.queries(), slices.row_of(slices.frames() - 1), 1);
+        queries.push(drive[frame]);
+        const auto taken = map.take(queries.rows(), queries.row_of(queries.newest()), 1);
         if (taken.removed) proposals.removed(*taken.removed);
       };
       std::size_t frame = 0;
@@ -106,8 +106,8 @@ TEST(CandidateProposals, LookAtEveryRowWhilePlacesGo) {
         for (std::size_t look = 0; look < round && !seen; ++look) {
           take(frame++);
           // Compared as if the robot were at the place again.
-          slices.push(drive[static_cast<std::size_t>(number)]);
-          static_cast<void>(proposals.look(slices, map, places, slices.frames() - 1));
+          queries.push(drive[static_cast<std::size_t>(number)]);
+          static_cast<void>(proposals.look(queries, map, places, queries.newest()));
           std::size_t row = 0;
           while (row < places && map.order().number(row) != number) ++row;
           gone = row == places;
@@ -126,18 +126,18 @@ TEST(CandidateProposals, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
   const MatcherConfig config = sketched(Use::localise, 2);
   const PlaceMap map = map_of(drive, config);
   TestArena memory;
-  DifferenceSlices slices(memory.arena, config, 12, {100, 32});
+  QueryHistory queries(memory.arena, DescriptorForm(config, 32), 12);
   CandidateProposals proposals(memory.arena, config, 100);
-  slices.push(drive[40]);
+  queries.push(drive[40]);
   for (std::size_t row = 0; row <= 40; row += 2) {
-    static_cast<void>(proposals.look(slices, map, 100, 0));
+    static_cast<void>(proposals.look(queries, map, 100, 0));
   }
   ASSERT_TRUE(proposed(proposals, 40));
   proposals.removed(99);
   for (int place = 0; place < 10; ++place) proposals.removed(0);
   proposals.skip(9);
   // 40 less 10 that went, 9 frames and this one further on; the scanned is far from it.
-  static_cast<void>(proposals.look(slices, map, 100, 0));
+  static_cast<void>(proposals.look(queries, map, 100, 0));
   EXPECT_TRUE(proposed(proposals, 40));
   proposals.restart();
   EXPECT_TRUE(proposals.proposals().empty());

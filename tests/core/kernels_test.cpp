@@ -270,9 +270,10 @@ class Slices : public testing::Test {
   oracle::Vectors drive_ = oracle::drive(21, 30, 20);
   PlaceMap map_ = map_of({drive_.begin(), drive_.begin() + 6}, config_);
   TestArena memory_;
-  DifferenceSlices slices_{memory_.arena, config_, 5, capacity};
+  QueryHistory queries_{memory_.arena, DescriptorForm(config_, 20), 5};
+  DifferenceSlices slices_{memory_.arena, config_, queries_, capacity};
 
-  void push(std::size_t frame) { slices_.push(drive_[frame]); }
+  void push(std::size_t frame) { queries_.push(drive_[frame]); }
 
   std::vector<float> column(const DifferenceSlices& slices, std::uint64_t frame) const {
     std::vector<float> shown(6);
@@ -321,8 +322,9 @@ TEST_F(Slices, EnhancedOnesComputeTheRowsAroundOnce) {
     config.enhance = true;
     config.rwindow = 2;
     PlaceMap map = map_of({drive_.begin(), drive_.begin() + 6}, config);
-    DifferenceSlices enhanced(memory.arena, config, 5, capacity);
-    enhanced.push(drive_[3]);
+    QueryHistory queries(memory.arena, DescriptorForm(config, 20), 5);
+    queries.push(drive_[3]);
+    DifferenceSlices enhanced(memory.arena, config, queries, capacity);
     EXPECT_EQ(enhanced.fill(map, 0, 3, 3), 0U);
     EXPECT_EQ(enhanced.missing(map, 0, 2, 4), 4U);
     EXPECT_EQ(enhanced.fill(map, 0, 2, 4), 4U) << "one row on either side";
@@ -331,8 +333,7 @@ TEST_F(Slices, EnhancedOnesComputeTheRowsAroundOnce) {
     EXPECT_EQ(enhanced.fill(map, 0, 0, 6), 0U) << "the ends are clipped to the map";
     TestArena plain;
     config.enhance = false;
-    DifferenceSlices differences(plain.arena, config, 5, capacity);
-    differences.push(drive_[3]);
+    DifferenceSlices differences(plain.arena, config, queries, capacity);
     differences.fill(map, 0, 0, 6);
     const std::vector<float> column_of_3 = column(differences, 0);
     for (std::size_t row = 0; row < 6; ++row) {
@@ -369,13 +370,13 @@ TEST(PlaceMap, TakesOnlyWhatFits) {
 
 TEST(ChangeDegree, EqualsEquationFourAndNamesItsEdges) {
   TestArena memory;
-  DifferenceSlices slices(memory.arena, paper(Candidates::all, 2), 12, {1, 2});
+  QueryHistory queries(memory.arena, DescriptorForm(paper(Candidates::all, 2), 2), 12);
   ChangeDegree degree;
   std::vector<std::vector<float>> frames;
   const auto see = [&](float a, float b) {
     frames.push_back({a, b});
-    slices.push(frames.back());
-    return degree.advance(slices, frames.size() - 1);
+    queries.push(frames.back());
+    return degree.advance(queries, frames.size() - 1);
   };
   for (int frame = 0; frame < 11; ++frame) {
     EXPECT_EQ(see(static_cast<float>(frame % 3), 1.0F), 1.0) << "fewer than 11 earlier frames";

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
-#include "seqloop/detail/difference_slices.hpp"
+#include "seqloop/detail/query_history.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
 
@@ -35,7 +35,7 @@ class CandidateProposals {
   /// @param rows   rows of the map that may be searched
   /// @param oldest the oldest frame that belongs together with the newest
   /// Work: what it returns. Allocates: never.
-  Looks look(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+  Looks look(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
              std::uint64_t oldest) noexcept;
 
   /// A line that the frames of the window may have taken through the map.
@@ -65,23 +65,23 @@ class CandidateProposals {
     std::size_t row;
   };
 
-  [[nodiscard]] std::span<const Alike> best_of_scan(const DifferenceSlices& slices,
+  [[nodiscard]] std::span<const Alike> best_of_scan(const QueryHistory& queries,
                                                     const PlaceMap& map, std::size_t rows) noexcept;
-  void look_closely(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+  void look_closely(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
                     std::size_t row) noexcept;
   void prefetch(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept;
-  void scan(const DifferenceSlices& slices, const PlaceMap& map, std::size_t first,
+  void scan(const QueryHistory& queries, const PlaceMap& map, std::size_t first,
             std::span<std::uint32_t> bits) noexcept;
-  [[nodiscard]] std::uint32_t differing_bits(const DifferenceSlices& slices, const PlaceMap& map,
+  [[nodiscard]] std::uint32_t differing_bits(const QueryHistory& queries, const PlaceMap& map,
                                              std::size_t rows, std::size_t back, std::size_t row,
                                              std::size_t behind) noexcept;
   [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept {
     return behind_[line * (ds_ + 1) + back];
   }
   void remember(Alike alike) noexcept;
-  void weigh(const DifferenceSlices& slices, const PlaceMap& map, std::size_t rows,
+  void weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
              std::uint64_t oldest) noexcept;
-  [[nodiscard]] std::size_t best_line(const DifferenceSlices& slices, const PlaceMap& map,
+  [[nodiscard]] std::size_t best_line(const QueryHistory& queries, const PlaceMap& map,
                                       std::size_t rows, std::size_t row,
                                       std::size_t reach) noexcept;
 

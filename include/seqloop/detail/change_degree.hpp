@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "seqloop/detail/difference_slices.hpp"
+#include "seqloop/detail/query_history.hpp"
 
 namespace seqloop {
 
@@ -15,11 +15,11 @@ class ChangeDegree {
   static constexpr std::size_t reach = 10;
 
   /// Moves on to the next frame.
-  /// @param frame the frame after the last call's, at most `reach` older than what `slices` keeps
+  /// @param frame the frame after the last call's, at most `reach` older than what `queries` keeps
   /// @return CD: the sum of its distances to the 10 frames before it, by the same sum one frame
   /// earlier; 1 with fewer than 11 earlier frames and for 0/0, infinity for x/0
   /// Work: 10 distances. Allocates: never.
-  double advance(const DifferenceSlices& slices, std::uint64_t frame) noexcept;
+  double advance(const QueryHistory& queries, std::uint64_t frame) noexcept;
 
   /// Distances that the last call computed.
   [[nodiscard]] std::size_t distances() const noexcept { return distances_; }

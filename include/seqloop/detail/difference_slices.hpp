@@ -7,7 +7,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/column_ring.hpp"
 #include "seqloop/detail/contrast.hpp"
-#include "seqloop/detail/descriptor_rows.hpp"
+#include "seqloop/detail/query_history.hpp"
 #include "seqloop/matcher_config.hpp"
 #include "seqloop/place_map.hpp"
 
@@ -19,37 +19,16 @@ namespace seqloop {
 /// numbers of `unit()`s.
 class DifferenceSlices {
  public:
-  /// @param history  query descriptors kept, above ds
+  /// @param queries  the frames that columns belong to, more than ds of them; lives longer than
+  /// this
   /// @param capacity places of the map, descriptor size
   /// Allocates: from the arena only.
-  DifferenceSlices(Arena& arena, const MatcherConfig& config, std::size_t history,
+  DifferenceSlices(Arena& arena, const MatcherConfig& config, const QueryHistory& queries,
                    const Capacity& capacity);
 
-  /// Takes the next frame's descriptor, forgetting the oldest.
-  /// @param descriptor [D] finite. Work: D. Allocates: never.
-  void push(std::span<const float> descriptor) noexcept;
-
-  /// Takes another frame with the newest one's descriptor, or with none, all zero, if it is the
-  /// first. Work: D copies. Allocates: never.
-  void push_again() noexcept;
-
-  /// The same, with the differences that are computed already; at least one must have been pushed.
-  /// Work: N + D copies at most. Allocates: never.
+  /// The newest frame has the descriptor of the one before it: takes that one's differences, as far
+  /// as they are computed. Work: N copies at most. Allocates: never.
   void repeat() noexcept;
-
-  /// Frames pushed so far.
-  [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
-
-  /// The newest `history` frames' descriptors; a frame's row is `row_of(frame)`.
-  [[nodiscard]] const DescriptorRows& queries() const noexcept { return queries_; }
-  [[nodiscard]] std::size_t row_of(std::uint64_t frame) const noexcept {
-    return static_cast<std::size_t>(frame % history_);
-  }
-
-  /// The difference of two of the newest `history` frames. Work: D MACs.
-  [[nodiscard]] double between(std::uint64_t a, std::uint64_t b) const noexcept {
-    return queries_.between(row_of(a), row_of(b));
-  }
 
   /// Makes sure that the differences of a frame to the rows [first, last) are there; enhanced ones
   /// need those of rwindow / 2 rows on either side too.
@@ -100,9 +79,7 @@ class DifferenceSlices {
   bool enhance_;
   Contrast contrast_;
   double unit_;
-  std::size_t history_;
-  std::uint64_t frames_ = 0;
-  DescriptorRows queries_;  // [history]
+  const QueryHistory* queries_;
   // Of these four only what the configuration asks for has any memory.
   ColumnRing<float> exact_;
   ColumnRing<float> enhanced_;

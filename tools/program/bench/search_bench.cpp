@@ -46,13 +46,14 @@ struct Window {
         memory(needed(), {}),
         arena(memory.span()),
         lines(arena, ds, config.vmin, config.vmax),
-        slices(arena, config, ds + 1, {places, descriptor_size}),
+        queries(arena, DescriptorForm(config, descriptor_size), ds + 1),
+        slices(arena, config, queries, {places, descriptor_size}),
         search(arena, lines, config, places) {
     SyntheticPlaces street(descriptor_size);
     std::vector<float> seen(descriptor_size);
     for (std::size_t frame = 0; frame < lines.window(); ++frame) {
       street.see(static_cast<double>(std::min(frame, places - 1)), 1.0F, seen);
-      slices.push(seen);
+      queries.push(seen);
       (void)slices.fill(map, frame, 0, places);
     }
   }
@@ -62,7 +63,9 @@ struct Window {
     Arena measuring(plan);
     const Trajectories measured(measuring, config.sequence_length, config.vmin, config.vmax);
     const Capacity capacity{map.capacity(), descriptor_size};
-    const DifferenceSlices columns(measuring, config, config.sequence_length + 1, capacity);
+    const QueryHistory kept(measuring, DescriptorForm(config, descriptor_size),
+                            config.sequence_length + 1);
+    const DifferenceSlices columns(measuring, config, kept, capacity);
     const SequenceSearch scores(measuring, measured, config, map.capacity());
     return total_bytes(plan);
   }
@@ -74,6 +77,7 @@ struct Window {
   ArenaMemory memory;
   Arena arena;
   Trajectories lines;
+  QueryHistory queries;
   DifferenceSlices slices;
   SequenceSearch search;
 };
