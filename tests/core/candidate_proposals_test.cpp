@@ -19,9 +19,10 @@ MatcherConfig sketched(Use use, std::size_t scanned) {
 }
 
 bool proposed(const CandidateProposals& proposals, std::size_t row) {
-  return std::ranges::any_of(proposals.proposals(), [&](const CandidateProposals::Proposal& proposal) {
-    return proposal.centre == row && proposal.difference == 0.0;
-  });
+  return std::ranges::any_of(proposals.proposals(),
+                             [&](const CandidateProposals::Proposal& proposal) {
+                               return proposal.centre == row && proposal.difference == 0.0;
+                             });
 }
 
 TEST(CandidateProposals, LookAtEveryRowOnceInARound) {

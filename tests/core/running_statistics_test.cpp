@@ -1,0 +1,133 @@
+// Running statistics beside the batch definition.
+#include "seqloop/detail/running_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+TEST(RunningStatistics, EqualTheBatchDefinition) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 3);
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal(2.0F, 3.0F);
+  std::vector<std::vector<float>> frames;
+  for (int i = 0; i < 200; ++i) {
+    frames.push_back({normal(random), normal(random), 7.0F});
+    statistics.observe(frames.back());
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    double mean = 0.0;
+    double variance = 0.0;
+    for (const auto& frame : frames) mean += static_cast<double>(frame[d]) / 200.0;
+    for (const auto& frame : frames)
+      variance += std::pow(static_cast<double>(frame[d]) - mean, 2.0) / 200.0;
+    EXPECT_NEAR(statistics.mean()[d], mean, 1e-9);
+    EXPECT_NEAR(statistics.variance()[d], variance, 1e-9);
+  }
+  std::vector<float> out(3);
+  EXPECT_TRUE(statistics.standardise(frames[0], out));
+  EXPECT_EQ(out[2], 0.0F) << "a feature that never changes says nothing";
+  EXPECT_NEAR(std::hypot(out[0], out[1]), 1.0, 1e-6);
+}
+
+TEST(RunningStatistics, StandardiseEqualsTheDefinitionForEverySize) {
+  std::mt19937 random(6);
+  std::normal_distribution<float> normal;
+  for (const std::size_t size : {1U, 7U, 8U, 9U, 735U}) {
+    TestArena memory;
+    RunningStatistics statistics(memory.arena, size);
+    std::vector<float> frame(size);
+    for (int i = 0; i < 20; ++i) {
+      // Features of very different deviations, some below the floor.
+      for (std::size_t d = 0; d < size; ++d) {
+        frame[d] = 3.0F + normal(random) / static_cast<float>(d + 1);
+      }
+      statistics.observe(frame);
+    }
+    double floor = 0.0;
+    for (const double variance : statistics.variance()) floor += 0.1 * std::sqrt(variance);
+    floor /= static_cast<double>(size);
+    std::vector<double> right(size);
+    double squares = 0.0;
+    for (std::size_t d = 0; d < size; ++d) {
+      right[d] = (static_cast<double>(frame[d]) - statistics.mean()[d]) /
+                 std::max(std::sqrt(statistics.variance()[d]), floor);
+      squares += right[d] * right[d];
+    }
+    std::vector<float> out(size);
+    EXPECT_TRUE(statistics.standardise(frame, out));
+    for (std::size_t d = 0; d < size; ++d) {
+      const double value = right[d] / std::sqrt(squares);
+      EXPECT_NEAR(static_cast<double>(out[d]), value, 3e-7 * std::abs(value)) << size << ' ' << d;
+    }
+  }
+}
+
+TEST(RunningStatistics, FirstFrameBecomesTheZeroVector) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 2);
+  const std::vector<float> frame{1.0F, 2.0F};
+  statistics.observe(frame);
+  std::vector<float> out{9.0F, 9.0F};
+  EXPECT_FALSE(statistics.standardise(frame, out));
+  EXPECT_EQ(out, (std::vector<float>{0.0F, 0.0F}));
+}
+
+TEST(RunningStatistics, StartFromAnotherDriveAndMoveOn) {
+  TestArena memory;
+  RunningStatistics map(memory.arena, 1);
+  for (const float value : {1.0F, 3.0F, 1.0F, 3.0F}) map.observe(std::vector<float>{value});
+  RunningStatistics query(memory.arena, 1);
+  query.start_from(map, 2);
+  EXPECT_EQ(query.frames(), 2U);
+  EXPECT_EQ(query.mean()[0], 2.0);
+  query.follow(std::vector<float>{5.0F}, 100);
+  EXPECT_DOUBLE_EQ(query.mean()[0], 3.0) << "one frame against a prior of two";
+  EXPECT_DOUBLE_EQ(query.variance()[0], (2.0 / 3.0) * (1.0 + 9.0 / 3.0));
+  query.start_from(map, 99);
+  EXPECT_EQ(query.frames(), 4U) << "a prior counts for no more than what was seen";
+}
+
+TEST(RunningStatistics, ForgetBeyondTheHorizon) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 1);
+  for (int i = 0; i < 1000; ++i) {
+    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F}, 10);
+  }
+  for (int i = 0; i < 100; ++i) {
+    statistics.follow(std::vector<float>{i % 2 == 0 ? 8.0F : 12.0F}, 10);
+  }
+  EXPECT_NEAR(statistics.mean()[0], 10.0, 0.2);
+}
+
+TEST(RunningStatistics, AHaltTeachesThemNothing) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 2);
+  for (int i = 0; i < 50; ++i) {
+    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F, i % 3 == 0 ? 2.0F : -1.0F}, 20);
+  }
+  statistics.follow(std::vector<float>{1.5F, 1.5F}, 20);
+  const double before = statistics.mean()[0];
+  for (int i = 0; i < 500; ++i) statistics.follow(std::vector<float>{1.5F, 1.51F}, 20);
+  EXPECT_EQ(statistics.mean()[0], before);
+}
+
+TEST(RunningStatistics, StartFlatFromAFirstFrame) {
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 4);
+  statistics.start_flat(std::vector<float>{1.0F, 1.0F, 3.0F, 3.0F}, 20);
+  EXPECT_EQ(statistics.frames(), 20U);
+  for (std::size_t d = 0; d < 4; ++d) {
+    EXPECT_EQ(statistics.mean()[d], 2.0);
+    EXPECT_EQ(statistics.variance()[d], 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace seqloop
