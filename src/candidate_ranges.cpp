@@ -97,7 +97,8 @@ void CandidateRanges::adapt_k(std::size_t match, double change_degree) noexcept 
     recorded_maximum_ = 0;
     return;
   }
-  // IML: how far down the list that made this frame's candidates the match was (D6).
+  // IML: how far down the list that made this frame's candidates the match was (src/README.md,
+  // section 4.6).
   if (ranked_count_ == 0) return;
   std::size_t needed = 1;
   while (needed < std::min(k_, ranked_count_) &&

@@ -76,6 +76,7 @@ class Detector {
   /// closing loops, they become places. After more, what was seen before says nothing of now: none
   /// of them is counted, and the window begins anew (`warming_up`).
   /// Work: N + D copies a frame at most; no distances, no line-sums. Allocates: never.
+  /// Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// About what the newest step compared: its descriptor, standardised if that is on.

@@ -21,7 +21,7 @@ enum class Arithmetic : std::uint8_t {
   sketch    ///< 2,048 bits a place, whatever the size of the descriptor
 };
 
-/// Which rows of the map a frame is compared with (ALGORITHMS: the methods).
+/// Which rows of the map a frame is compared with (src/README.md, section 3.6).
 enum class Candidates : std::uint8_t {
   all,      ///< SeqCNNSLAM: every row
   ranges,   ///< A-SeqCNNSLAM, Algorithm 4: K ranges around the last frame's best rows

@@ -28,10 +28,11 @@ double difference(const MatcherConfig& config, const Forms& a, const Forms& b);
 /// What a difference of 1 is.
 double unit(const MatcherConfig& config);
 
-/// Rows that the line of velocity m / ds lies above its centre row at column i (D2).
+/// Rows that the line of velocity m / ds lies above its centre row at column i (src/README.md,
+/// section 3.3).
 std::int64_t line_offset(std::int64_t m, std::int64_t i, std::int64_t ds);
 
-/// The integers m of all lines, slowest first (D2).
+/// The integers m of all lines, slowest first (src/README.md, section 4.2).
 std::vector<std::int64_t> line_velocities(const MatcherConfig& config);
 
 /// One answered frame as the definitions give it.
@@ -46,8 +47,8 @@ struct Answer {
   std::int64_t k;
 };
 
-/// ALGORITHMS §3 to §6 written down as they stand, on the whole matrix, in double, without any
-/// thought of speed. @param reference empty: close loops within the query.
+/// src/README.md, sections 3 and 4, written down as they stand, on the whole matrix, in double,
+/// without any thought of speed. @param reference empty: close loops within the query.
 std::vector<Answer> match(const Vectors& reference, const Vectors& query,
                           const MatcherConfig& config);
 

@@ -1,5 +1,5 @@
-// Recall at 100 % precision on the real drives: the numbers that the README names, with room for
-// what another build of OpenCV rounds otherwise.
+// Recall at 100 % precision on the real drives: the numbers that tools/README.md names, with room
+// for what another build of OpenCV rounds otherwise.
 #include <nlohmann/json.hpp>
 
 #include "evaluation/csv.hpp"

@@ -15,7 +15,8 @@ namespace seqloop {
 
 /// The rows that a frame is compared with, their differences computed. Where the detector
 /// relocalises, a frame has a budget of distances, spent in the order in which ranges are added:
-/// what one frame could only begin, the next one finds begun.
+/// what one frame could only begin, the next one finds begun. Source: src/README.md,
+/// section 5.5.
 class CandidateBudget {
  public:
   /// Allocates: from the arena only.

@@ -15,7 +15,7 @@ namespace seqloop {
 /// whose path joins an earlier one, is found again without ever searching all rows. Each frame
 /// scans a part of the map, by sketches of a few of the newest frames, and remembers the rows that
 /// look most alike. Remembered rows are looked at again at every frame, and move along with the
-/// robot.
+/// robot. Source: src/README.md, section 5.4.
 class CandidateProposals {
  public:
   /// How many are remembered.

@@ -8,7 +8,8 @@
 
 namespace seqloop {
 
-/// How much faster or slower the scene changes at a frame than at the one before it. Eq. (4), D5.
+/// How much faster or slower the scene changes at a frame than at the one before it. Source:
+/// Eq. (4); src/README.md, section 4.5.
 class ChangeDegree {
  public:
   /// Frames that a frame is compared with.

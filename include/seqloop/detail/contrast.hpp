@@ -26,7 +26,8 @@ class Contrast {
   /// @param column [rows of the map] differences, filled around the row; in any unit
   /// @param scale  what 1 becomes; 1 for float
   /// @return 0 .. 2 (n - 1) / sqrt(n), times scale; whole numbers are rounded, halves up
-  /// Work: 2 n. Allocates: never. Source: ALGORITHMS, enhancement.
+  /// Work: 2 n. Allocates: never. Source: src/README.md, sections 3.6
+  /// and 4.7.
   [[nodiscard]] float enhance(std::span<const float> column, std::size_t row,
                               double scale) const noexcept;
   [[nodiscard]] std::uint16_t enhance(std::span<const std::uint16_t> column, std::size_t row,

@@ -21,7 +21,8 @@ struct BestRow {
   std::size_t scored;  ///< candidates that had a score
 };
 
-/// Picks the best row and says how unique it is. Source: ALGORITHMS, match and confidence; D4.
+/// Picks the best row and says how unique it is. Source: src/README.md,
+/// sections 3.5 and 4.4.
 class LoopDecision {
  public:
   /// Allocates: from the arena only.
@@ -30,7 +31,7 @@ class LoopDecision {
 
   /// @param scores [places], infinity for a row that no line fits
   /// @param keep_runner_up whether this frame's runner-up stands in later, at frames whose
-  /// candidates have none: D4 after a full search
+  /// candidates have none (src/README.md, section 4.4): after a full search
   /// @param proposals rows that could not all be afforded: those that have no score may be the
   /// runner-up by what their sketches tell
   /// @param rows rows of the map that may be searched
@@ -46,7 +47,7 @@ class LoopDecision {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept { past_.removed(row); }
 
-  /// Forgets what the frames before saw, but for the runner-up of D4.
+  /// Forgets what the frames before saw, but for the runner-up that stands in later.
   void restart() noexcept { past_.restart(); }
 
  private:

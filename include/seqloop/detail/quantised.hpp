@@ -18,7 +18,7 @@ struct Quantised {
 /// @param descriptor [D] finite, D up to most_small_values
 /// @param out        [>= D] -127 .. 127, zero beyond D
 /// Error: each value is off by scale / 2 at most, so the vector by sqrt(D) * scale / 2.
-/// Work: 3 D. Allocates: never.
+/// Work: 3 D. Allocates: never. Source: src/README.md, section 5.2.
 Quantised quantise(std::span<const float> descriptor, std::span<std::int8_t> out) noexcept;
 
 /// 1 / length, what `fixed_distance` wants to know of a descriptor; 0 for the zero vector.

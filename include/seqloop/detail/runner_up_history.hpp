@@ -12,7 +12,8 @@ namespace seqloop {
 
 /// Rows that looked good at the last frames. A frame that scans a part of a large map sees only
 /// some of the rows that come close to its best one, and would be too sure of it; the frames
-/// before, whose windows overlap with its own, saw the others.
+/// before, whose windows overlap with its own, saw the others. Source: src/README.md,
+/// section 5.6.
 class RunnerUpHistory {
  public:
   /// Allocates: from the arena only.

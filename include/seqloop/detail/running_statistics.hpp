@@ -8,6 +8,7 @@
 namespace seqloop {
 
 /// Mean and variance of every feature over a drive, one frame at a time, in fixed memory.
+/// Source: src/README.md, section 5.1.
 class RunningStatistics {
  public:
   /// Allocates: from the arena only, 24 bytes a feature.

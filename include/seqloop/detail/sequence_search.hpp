@@ -13,7 +13,8 @@
 
 namespace seqloop {
 
-/// Scores rows of the map by the straight lines through them. Source: Algorithm 2, D3.
+/// Scores rows of the map by the straight lines through them. Source: Algorithm 2;
+/// src/README.md, sections 3.4 and 4.3.
 ///
 /// A line runs along diagonals of velocity 1 and changes from one to the next |m - ds| times. For a
 /// block of rows, every diagonal is summed up from end to end, and so is, up to each column, what

@@ -38,6 +38,7 @@ void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue
 /// @param chosen     [sketched_values(words)] for this D
 /// @param out        [words] written
 /// Work: words * 64 * values_per_bit adds, whatever D is. Allocates: never.
+/// Source: src/README.md, section 5.3.
 void sketch(std::span<const std::int8_t> descriptor, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept;
 

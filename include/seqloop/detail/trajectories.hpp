@@ -8,7 +8,8 @@
 
 namespace seqloop {
 
-/// The velocities m / ds that give different lines: every integer m in [first, last] (D2).
+/// The velocities m / ds that give different lines: every integer m in [first, last].
+/// Source: src/README.md, section 4.2.
 struct VelocityRange {
   std::int64_t first;
   std::int64_t last;
@@ -23,11 +24,13 @@ struct VelocityRange {
 [[nodiscard]] VelocityRange velocity_range(std::size_t ds, double vmin, double vmax) noexcept;
 
 /// Rows that a line of velocity m / ds lies above its centre row, at column i of the window: round
-/// half up of m * (i - ds/2) / ds, in integers. Zero at the centre column. Source: D2.
+/// half up of m * (i - ds/2) / ds, in integers. Zero at the centre column. Source: src/README.md,
+/// section 3.3.
 [[nodiscard]] std::int64_t trajectory_offset(std::int64_t m, std::size_t i,
                                              std::size_t ds) noexcept;
 
-/// All lines through a cell, as a table of row offsets. Source: Algorithm 2 as D1 and D2 read it.
+/// All lines through a cell, as a table of row offsets. Source: Algorithm 2,
+/// as src/README.md, section 4, reads it.
 class Trajectories {
  public:
   /// Work: M * (ds + 1). Allocates: from the arena only.
