@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/budget.hpp"
 
 namespace seqloop {

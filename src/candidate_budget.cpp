@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/candidate_budget.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/candidate_ranges.hpp"
 
 #include <algorithm>

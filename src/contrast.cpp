@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/contrast.hpp"
 
 #include <algorithm>

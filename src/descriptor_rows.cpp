@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/descriptor_rows.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/difference_slices.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/fault.hpp"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/fixed_distance.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/frame_report.hpp"
 
 namespace seqloop {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/integer_kernels.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/latency_histogram.hpp"
 
 #include <algorithm>

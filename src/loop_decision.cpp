@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/loop_decision.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/matcher_config.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/place_map.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/place_order.hpp"
 
 namespace seqloop {

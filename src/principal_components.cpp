@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/principal_components.hpp"
 
 #include <Eigen/Eigenvalues>

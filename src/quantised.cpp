@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/quantised.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/raw_picture.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/runner_up_history.hpp"
 
 #include <algorithm>

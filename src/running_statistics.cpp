@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/running_statistics.hpp"
 
 #include <algorithm>

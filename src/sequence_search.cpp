@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/sequence_search.hpp"
 
 #include <algorithm>

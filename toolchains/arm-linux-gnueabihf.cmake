@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # 32-bit ARM boards with Debian's armhf or Raspberry Pi OS: Raspberry Pi 2 and later. The compiler's
 # own settings are the least that Debian asks of a processor (ARMv7-A, VFPv3); NEON is used where the
 # board has it, because the kernels in src/kernels are chosen when the program runs.

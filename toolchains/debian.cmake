@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What both toolchains share: Debian's cross compiler, a folder with the board's files (made by
 # tools/sysroot), and an emulator, with which ctest runs what was built.
 set(CMAKE_SYSTEM_NAME Linux)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drives on which loops are measured, and how each is made. Used by tools/loops."""
 import array
 import csv

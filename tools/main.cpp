@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program `seqloop`: all verbs, and what they cannot bring themselves.
 #include "experiment/run/runner.hpp"
 #include "program/command_line.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/files/npy_file.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "files/npy_header.hpp"
 
 #include <algorithm>

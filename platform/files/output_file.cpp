@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/files/output_file.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "files/text_file.hpp"
 
 #include <fstream>

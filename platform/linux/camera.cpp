@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/camera.hpp"
 
 #include <poll.h>

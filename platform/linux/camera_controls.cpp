@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/camera_controls.hpp"
 
 #include <linux/videodev2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/camera_list.hpp"
 
 #include <algorithm>

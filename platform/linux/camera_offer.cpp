@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "linux/camera_offer.hpp"
 
 #include <linux/videodev2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "linux/capture_start.hpp"
 
 #include <algorithm>

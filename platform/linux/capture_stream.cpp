@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/capture_stream.hpp"
 
 #include <linux/videodev2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "linux/choose_mode.hpp"
 
 #include <algorithm>

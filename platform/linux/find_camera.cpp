@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/find_camera.hpp"
 
 #include <algorithm>

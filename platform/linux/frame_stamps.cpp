@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/frame_stamps.hpp"
 
 #include <algorithm>

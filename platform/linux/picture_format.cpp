@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/picture_format.hpp"
 
 #include <linux/videodev2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/pixel_format.hpp"
 
 #include <linux/videodev2.h>

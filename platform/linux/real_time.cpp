@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/real_time.hpp"
 
 #include <linux/capability.h>

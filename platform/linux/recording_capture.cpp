@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/recording_capture.hpp"
 
 #include <algorithm>

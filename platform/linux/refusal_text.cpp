@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "linux/refusal_text.hpp"
 
 #include <algorithm>

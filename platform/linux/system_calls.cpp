@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/system_calls.hpp"
 
 #include <dirent.h>

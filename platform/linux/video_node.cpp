@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/video_node.hpp"
 
 #include <linux/videodev2.h>

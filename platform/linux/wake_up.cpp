@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/linux/detail/wake_up.hpp"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/builtin_describer.hpp"
 
 #include "opencv/detail/builtin_model.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/dnn_describer.hpp"
 
 #include <algorithm>

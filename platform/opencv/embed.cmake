@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Turns a file into C++:  cmake -D INPUT=file -D OUTPUT=file.cpp -P embed.cmake
 file(READ "${INPUT}" bytes HEX)
 if(bytes STREQUAL "")

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/image_folder_source.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/picture_resizer.hpp"
 
 #include "opencv/detail/picture_scaler.hpp"

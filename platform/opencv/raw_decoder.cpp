@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/raw_decoder.hpp"
 
 #include <array>

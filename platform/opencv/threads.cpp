@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/threads.hpp"
 
 #include <opencv2/core/utility.hpp>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # TurboJPEG::TurboJPEG, libjpeg-turbo's own interface. Its CMake package is not everywhere, and
 # insists on files of other packages where it is.
 find_path(TurboJPEG_INCLUDE_DIR turbojpeg.h)

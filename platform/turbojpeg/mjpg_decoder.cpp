@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 #include <turbojpeg.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dots.hpp"
 #include "kernels/variants.hpp"
 #include "kernels/vnni512.hpp"

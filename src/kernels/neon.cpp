@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/variants.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work stays within the plan whatever happens, and a partial search never makes up a score.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/budget.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is taken in is all there, and costs no more than it may.
 #include "seqloop/detail/candidate_budget.hpp"
 

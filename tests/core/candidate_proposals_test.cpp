@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The whole map is in sight: how soon each row is looked at, and how soon a carried robot is found.
 #include "seqloop/detail/candidate_proposals.hpp"
 

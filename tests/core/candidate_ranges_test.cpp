@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Candidate ranges beside Algorithm 4.
 #include "seqloop/detail/candidate_ranges.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs of rows against a plain set of rows.
 #include <random>
 #include <set>

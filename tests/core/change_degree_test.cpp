@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The change degree beside Eq. (4).
 #include "seqloop/detail/change_degree.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ring of columns against a table of everything that was ever computed.
 #include "seqloop/detail/column_ring.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The detector against the definitions, over many shapes, in both uses and for every method.
 #include <cmath>
 

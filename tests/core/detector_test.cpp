@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a step promises beside the right answer: bounded work, fixed memory, honest gates.
 #include <algorithm>
 #include <cmath>

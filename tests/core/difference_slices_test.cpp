@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Differences are computed once, where asked, and stay right when the ring wraps.
 #include "seqloop/detail/difference_slices.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/fixed_text.hpp"
 
 #include <gtest/gtest.h>

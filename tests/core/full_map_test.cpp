@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What becomes of places when the map is full, and what is answered from then on.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every variant that this processor has, beside the definition, to the last bit.
 #include "seqloop/detail/integer_kernels.hpp"
 

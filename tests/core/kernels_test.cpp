@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each kernel beside its definition.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Quantiles beside the sorted list.
 #include "seqloop/latency_histogram.hpp"
 

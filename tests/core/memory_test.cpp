@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What `plan` says against what the process really takes.
 #include <deque>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A map of a million places: its memory is what the plan says, and no step takes more work, memory
 // or pages than in a small one.
 #include <sys/resource.h>

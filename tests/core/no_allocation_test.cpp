@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A step takes no memory, and the guard that says so can fail.
 #include <cstdlib>
 #include <memory>

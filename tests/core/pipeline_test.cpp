@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Grab, describe, match, with fakes for everything outside.
 #include "seqloop/pipeline.hpp"
 

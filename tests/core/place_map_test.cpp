@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A map says when it is full, and takes only what fits.
 #include "seqloop/place_map.hpp"
 

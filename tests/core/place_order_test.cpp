@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The order of places against a plain list.
 #include <algorithm>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Beside the textbook: a dense P x P covariance matrix and its eigenvectors, by Jacobi rotations.
 #include "seqloop/principal_components.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Descriptors of one byte a value, and how far they lie apart.
 #include "seqloop/detail/quantised.hpp"
 

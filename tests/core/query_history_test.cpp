@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A ring of descriptors: which frame is where, before and after it wraps.
 #include "seqloop/detail/query_history.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runners-up of the frames before, where a frame scans only a part of the map.
 #include "seqloop/detail/runner_up_history.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Running statistics beside the batch definition.
 #include "seqloop/detail/running_statistics.hpp"
 

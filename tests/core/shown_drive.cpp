@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "core/shown_drive.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/detail/sketch.hpp"
 
 #include <gtest/gtest.h>

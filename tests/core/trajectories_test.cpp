@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lines through the window, beside their definition.
 #include "seqloop/detail/trajectories.hpp"
 

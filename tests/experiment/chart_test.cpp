@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/chart.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks a report's folder: well-formed XML, nothing from outside, labels apart and inside.
 
 Usage: check_report.py FOLDER    exit code 1 and a line a fault where there is one.

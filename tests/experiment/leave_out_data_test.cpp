@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the rule's own numbers leave of Nordland, looked at picture by picture once.
 #include <gtest/gtest.h>
 

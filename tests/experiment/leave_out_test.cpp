@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/leave_out.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/results_csv.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // For libFuzzer: whatever comes from outside as bytes is read or refused, and no memory behind it
 // is touched. The first byte says what it is taken for.
 #include <algorithm>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks tools/models/alexnet.py: what the program computes from its files against the net written in numpy, and its check.
 
 Usage: alexnet.py ROOT SEQLOOP    the source folder and the program; needs numpy

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # The package that tools/cross makes runs where nothing is but the packages that it names, and what
 # these depend on.
 # Usage: board_package.sh ARCH    aarch64 or armhf

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Checks tools/board-report: what it prints, what it warns of, and what it refuses. The program's times
 # are made up, except in the last check; so are the board's files.
 # Usage: board_report.sh ROOT SEQLOOP

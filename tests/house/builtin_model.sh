@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # The committed network must be what its script makes, byte for byte, and at most 100 kB.
 # Usage: builtin_model.sh SOURCE
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # The core must not need OpenCV or threads, whatever its CMake target says.
 # Usage: core_symbols.sh NM LIBCORE LIBOPENCV   (the second library proves that the check can fail)
 set -eu

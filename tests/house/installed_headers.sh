@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # What `cmake --install` offers to users: the headers that installed_headers.txt lists, and in
 # detail/ what these include. Each of the listed ones compiles on its own.
 # Usage: installed_headers.sh SOURCE BUILD CXX

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # Builds and runs the program that the top README.md shows, against an installed copy, as a user would.
 # Usage: outside_program.sh SOURCE BUILD DRIVE_MAKER EMULATOR CMAKE_ARGUMENT...
 # EMULATOR starts what was built, and is empty where nothing is needed for that.

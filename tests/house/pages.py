@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks the pages, and what files of all kinds cite; and that the check can fail.
 
 Usage: pages.py ROOT    exit code 1 and a line a fault

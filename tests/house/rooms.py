@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks which room includes what (see the table in CONTRIBUTING.md), and that the check can fail.
 
 Usage: rooms.py ROOT    exit code 1 and a line a fault where a file looks into a room it must not.

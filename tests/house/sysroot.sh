@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What tools/sysroot refuses, and how it says so: what, why, what to do. Nothing is fetched.
 # Usage: sysroot.sh SOURCE
 set -euo pipefail

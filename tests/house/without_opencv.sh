@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # What SEQLOOP_OPENCV=OFF promises: a C++ compiler and CMake are enough for the core, files and
 # cameras; and the installed core answers the same on every processor, with kernels and without.
 # Usage: without_opencv.sh SOURCE CXX

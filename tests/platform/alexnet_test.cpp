@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Places-CNN / AlexNet with made-up weights: shapes and what is computed. The numbers are checked
 // by tests/house/alexnet.py.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/bag_of_words.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/builtin_describer.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/change_removal.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // On its own, because it replaces malloc.
 #include <gtest/gtest.h>
 

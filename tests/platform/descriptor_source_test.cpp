@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/files/descriptor_source.hpp"
 
 #include <gtest/gtest.h>

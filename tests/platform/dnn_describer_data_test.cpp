@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The real models of ../shared (environment variable SEQLOOP_SHARED).
 
 #include <gtest/gtest.h>

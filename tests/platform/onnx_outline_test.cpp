@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/onnx_outline.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "seqloop/opencv/video_source.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recall at 100 % precision on the real drives: the numbers that tools/README.md names, with room
 // for what another build of OpenCV rounds otherwise.
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a user gets wrong: each is exit code 2, a line that says what, why and what to do, and no
 // output file.
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/camera_decoder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // For seqloop-chosen-kernels, the program with the kernels that SEQLOOP_KERNELS names: this
 // function stands in for the library's own.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every descriptor through the real binary: what it writes, and what a user gets wrong.
 #include <algorithm>
 #include <vector>

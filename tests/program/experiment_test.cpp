@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole experiments through the real binary: their numbers against those of the single verbs, what
 // is done again and what is not, and what can be wrong with them.
 #include <fmt/format.h>

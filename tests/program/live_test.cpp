@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A recording played at its own rate through the real binary: ring, budget, policy, summary.
 #include <nlohmann/json.hpp>
 #include <sstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What tools/loops measures, on those of its drives that take seconds: candidate ranges find what
 // exhaustive search finds.
 #include <nlohmann/json.hpp>

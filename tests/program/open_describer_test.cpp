@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Describers that learn from drives at hand, as an experiment opens them.
 #include <gtest/gtest.h>
 

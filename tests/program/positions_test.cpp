@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Truth by where frames were, through the real binary.
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The main job through the real binary, on a drive of synthetic pictures and on synthetic
 // descriptors.
 #include <cmath>

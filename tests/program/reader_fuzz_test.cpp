@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Text from outside, damaged at random: always an answer or a SetupError, never a crash. What
 // descriptor files and pictures do is tested with their readers.
 #include <random>

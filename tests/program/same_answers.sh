@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # In whole numbers, the same descriptors give the same match list, to the last byte, whatever
 # processor and kernels compare them: here, and cross-built in an emulator.
 # Usage: same_answers.sh SEQLOOP CHOSEN BUILDS SHARED

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/run/source_numbers.hpp"
 
 #include <gtest/gtest.h>

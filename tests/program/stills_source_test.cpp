@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which frames become stills and what is cut out of them, on drives in memory.
 #include "program/drives/stills_source.hpp"
 

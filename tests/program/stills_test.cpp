@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stills through the real binary: from a folder, from a video, and what can go wrong.
 #include <opencv2/imgcodecs.hpp>
 

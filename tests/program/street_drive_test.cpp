@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The whole chain on drives that the project makes itself: pictures, truth, answers.
 #include <nlohmann/json.hpp>
 #include <sstream>

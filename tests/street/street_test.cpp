@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The synthetic street: same flags, same frames; truth that is true; any length and size.
 #include <gtest/gtest.h>
 

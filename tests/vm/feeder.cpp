@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // v4l2-feeder: plays a folder of JPEG files into a v4l2loopback device, as a camera that sends MJPG
 // or YUYV would, with faults on demand. For the virtual machine's tests.
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Compares two runs of `seqloop run` over the same pictures: every frame must have the same answer.
 
 Usage: same_matches.py LIVE.jsonl RECORDED.jsonl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cost/instruction_counter.hpp"
 
 #include <linux/perf_event.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cost/synthetic_picture.hpp"
 
 #include <turbojpeg.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluation/csv.hpp"
 
 #include <fmt/format.h>

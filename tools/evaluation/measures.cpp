@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluation/measures.hpp"
 
 #include <algorithm>

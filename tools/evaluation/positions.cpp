@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluation/positions.hpp"
 
 #include <algorithm>

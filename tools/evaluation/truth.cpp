@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "evaluation/truth.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Places-CNN / AlexNet for OpenCV's Caffe importer: write its network file, check a weights file, make weights up for tests.
 
 The net is Caffe's reference net, of which Places-CNN is a training; its layers have the names of the published deploy files, so

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Caffe's weights files (.caffemodel) without Caffe: what is in them, and new ones.
 
 A file is one protocol buffer message, NetParameter of caffe.proto; the numbers below are its fields'. Weights stay on disk:

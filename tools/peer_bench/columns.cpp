@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "peer_bench/columns.hpp"
 
 #include <cblas-openblas.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `seqloop-peers bench`: the program's benchmark with peers, other libraries, beside it.
 #include "peer_bench/columns.hpp"
 #include "peer_bench/matrices.hpp"

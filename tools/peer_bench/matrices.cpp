@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "peer_bench/matrices.hpp"
 
 #include <cblas-openblas.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pinhole camera and the flat surfaces it sees.
 #pragma once
 

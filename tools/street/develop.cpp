@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lens and sensor.
 #include <array>
 #include <cmath>

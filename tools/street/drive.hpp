@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A drive: legs, conditions and speed give one shot a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Chance looks of fronts: colours, floors, windows.
 #include "world.hpp"
 

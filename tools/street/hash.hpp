@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Integer hashing: the only source of chance in the street, the same on every machine.
 #pragma once
 

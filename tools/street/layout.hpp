@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The road around the camera, unrolled from headings into the plane.
 #pragma once
 

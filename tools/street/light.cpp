@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "light.hpp"
 
 namespace seqloop::street {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Conditions: sun, sky, season, fog, lamps and the camera's exposure.
 #pragma once
 

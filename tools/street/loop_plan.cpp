@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The legs of a drive that closes loops.
 #include <algorithm>
 #include <cmath>

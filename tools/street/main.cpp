@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // seqloop-street: makes drives down a street that does not exist.
 #include <unistd.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small vectors, colours and the soft steps of which textures are made.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames and truth to files, without half-written ones under their final names.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Flat polygons to pixels, with depth; each pixel remembers what it shows for later shading.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One shot to one picture: scene, pixels, shading, sprites, camera.
 #pragma once
 

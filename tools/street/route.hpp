@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the streets go: one endless street, and a path of legs over parts of it.
 #pragma once
 

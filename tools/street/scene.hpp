@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything one frame shows, as flat surfaces and sprites in camera coordinates.
 #pragma once
 

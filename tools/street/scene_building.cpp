@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Houses as surfaces: front, flanks, roof, and what sticks out of the front.
 #include <cmath>
 

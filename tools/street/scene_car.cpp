@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cars as surfaces: parked ones, and those that come the other way.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ground as strips between cross-sections of the road.
 #include <cmath>
 

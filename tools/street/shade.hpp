@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours of points on surfaces: procedural textures, no stored pictures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fronts of houses: cladding, windows, doors, shops, balconies.
 #include "shade.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Road, kerb, pavement and what lies behind.
 #include "shade.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cars, roofs, fences and hanging signs.
 #include "shade.hpp"
 

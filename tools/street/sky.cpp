@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sky, clouds, far hills; and what the lens and the sensor make of it all.
 #include <cmath>
 

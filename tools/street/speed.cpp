@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "speed.hpp"
 
 #include <algorithm>

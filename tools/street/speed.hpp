@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How fast a drive goes: cruising, slow-downs and halts.
 #pragma once
 

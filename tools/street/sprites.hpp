@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Trees, lamps, signs and people: small drawn pictures with smaller copies for the distance.
 #pragma once
 

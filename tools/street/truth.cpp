@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "truth.hpp"
 
 #include <algorithm>

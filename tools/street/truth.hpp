@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which frames show the same place.
 #pragma once
 

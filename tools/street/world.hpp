@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What stands beside the street: houses, trees, lamps and fences, found from hashes alone.
 #pragma once
 

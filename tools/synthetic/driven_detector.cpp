@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "synthetic/driven_detector.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "synthetic/places.hpp"
 
 #include <algorithm>

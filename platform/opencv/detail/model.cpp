@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/model.hpp"
 #include "opencv/detail/one_line.hpp"
 

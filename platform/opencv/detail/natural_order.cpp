@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/natural_order.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/picture_file.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/picture_scaler.hpp"
 
 #include <opencv2/imgproc.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "opencv/detail/training.hpp"
 
 #include "opencv/detail/one_line.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Write the built-in descriptor, oriented gradients as a small CNN, as an ONNX file.
 
 Why: a place needs a descriptor that works with no model at hand, costs well under a millisecond, and survives night and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "turbojpeg/detail/jpeg_header.hpp"
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Makes the tiny ONNX files of the describer's tests (needs python3-onnx)."""
 
 import pathlib

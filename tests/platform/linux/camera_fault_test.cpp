@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every error at every call: no crash, no leak, no spinning, and recovery.
 #include <array>
 #include <cerrno>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Between two frames, a camera takes no memory, whatever happens to the frames.
 #include <cerrno>
 

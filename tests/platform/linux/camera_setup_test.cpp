@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opening a camera: what is chosen, and what is said when it cannot be had.
 #include <cerrno>
 #include <cstring>

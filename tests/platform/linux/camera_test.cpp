@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A camera that runs: what frames carry, and how it heals itself.
 #include <algorithm>
 #include <cerrno>

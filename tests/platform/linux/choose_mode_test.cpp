@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which of its modes a camera is run in, case by case.
 #include "linux/choose_mode.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "platform/linux/fake_kernel.hpp"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Indices out of sequence numbers, and moments out of time stamps.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two threads, one exchange: nothing torn, nothing twice, nothing out of order, nothing uncounted.
 #include "seqloop/linux/detail/handover.hpp"
 

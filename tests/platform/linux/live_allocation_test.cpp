@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // No stage of a live run takes memory or faults a page in once it is warm. The pipeline asks its
 // clock between its stages, so a clock that samples counters tells them apart.
 #include <gtest/gtest.h>

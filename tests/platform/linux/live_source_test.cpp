@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The source that joins a capture thread and the work thread, on a camera that acts on command.
 #include "seqloop/linux/live_source.hpp"
 

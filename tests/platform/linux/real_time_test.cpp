@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is asked of the system for real time, and what it says when it refuses.
 #include "seqloop/linux/real_time.hpp"
 

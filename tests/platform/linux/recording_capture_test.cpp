@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A recording played as a camera, on a clock that nobody waits for.
 #include "seqloop/linux/recording_capture.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A million frames and more, with every fault that a camera has: nothing grows, nothing is
 // miscounted.
 #include <gtest/gtest.h>

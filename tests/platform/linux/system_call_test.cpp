@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The match stage asks nothing of the system: a process that is killed for any system call lives.
 #include <gtest/gtest.h>
 #include <linux/filter.h>

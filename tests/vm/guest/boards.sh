@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The program built for ARM boards, of 64 bits and of 32, by this arm64 machine's kernel. Each runs with
 # the libraries that its board has: SEQLOOP_aarch64 and SEQLOOP_armhf are the programs,
 # SYSROOT_aarch64 and SYSROOT_armhf the boards' files. FEEDER is of 64 bits; PICTURES as in loopback.sh.

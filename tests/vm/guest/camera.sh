@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A camera that works: formats, rates, other owners, interruptions.
 . "$(dirname "$0")/lib.sh"
 small="--format YUYV --size 320x180 --fps 10"

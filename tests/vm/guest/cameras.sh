@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # All cases in one machine: a boot costs seconds. CASES, if set, names those that are wanted.
 here=$(dirname "$0")
 failed=0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A camera that fails while `seqloop run` uses it: what its lines say, and that it comes back.
 . "$(dirname "$0")/lib.sh"
 

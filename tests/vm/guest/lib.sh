@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What the guest's cases share. The machine's tests set SEQLOOP, the program, and FEEDER,
 # v4l2-feeder; the machine sets MODULES, OUT and WORK.
 set -u

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Recorded pictures played into v4l2loopback, as MJPG and YUYV: a camera that sends damaged frames,
 # stops, dies and returns. PICTURES is a folder of 320x180 JPEG files. The driver keeps two frames for a
 # slow reader: at five a second, it may sleep for 400 ms.

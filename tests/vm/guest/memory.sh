@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # How much memory the live program has, with room for 3,476 places, once it runs.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A real drive through a real camera's kernel side: NIGHT played as MJPG, to be found in DAY.
 # Its answers are compared on the host, by tests/vm/places.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/chart_data.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/columns.hpp"
 
 #include <fmt/format.h>

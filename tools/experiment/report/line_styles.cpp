@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/line_styles.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/page.hpp"
 
 #include <fmt/format.h>

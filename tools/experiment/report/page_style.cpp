@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/page_style.hpp"
 
 namespace seqloop::experiment {

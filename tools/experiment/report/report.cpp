@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/report/report.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/described_drives.hpp"
 
 #include <fmt/format.h>

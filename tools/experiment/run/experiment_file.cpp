@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads an experiment file: sections in the order in which they refer to each other.
 #include <fmt/format.h>
 

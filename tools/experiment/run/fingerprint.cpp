@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/fingerprint.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/jobs.hpp"
 
 #include <fmt/format.h>

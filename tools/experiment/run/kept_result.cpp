@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/kept_result.hpp"
 
 #include <nlohmann/json.hpp>

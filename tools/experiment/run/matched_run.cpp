@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/matched_run.hpp"
 
 #include <chrono>

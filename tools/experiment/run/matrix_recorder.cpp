@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/matrix_recorder.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/pair_truth.hpp"
 
 #include <fmt/format.h>

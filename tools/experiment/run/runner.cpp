@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/runner.hpp"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/section.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "experiment/run/shown_sections.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/bench/contender.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/bench/fastest_read.hpp"
 
 #include <unistd.h>

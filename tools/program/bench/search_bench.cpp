@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/bench/search_bench.hpp"
 
 #include <algorithm>

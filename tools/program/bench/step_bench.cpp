@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/bench/step_bench.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/camera_decoder.hpp"
 
 #include "program/options/camera_options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "seqloop/opencv/raw_decoder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/describe_drive.hpp"
 
 #include <fmt/format.h>

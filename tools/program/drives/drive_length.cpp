@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/drive_length.hpp"
 
 #include <fmt/format.h>

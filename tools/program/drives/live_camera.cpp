@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/live_camera.hpp"
 
 #include <fmt/format.h>

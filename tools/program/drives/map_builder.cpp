@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/map_builder.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/stills_options.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/stills_source.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/drives/warm_up.hpp"
 
 #include <algorithm>

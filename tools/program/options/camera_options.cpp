@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/camera_options.hpp"
 
 #include <algorithm>

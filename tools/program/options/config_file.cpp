@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/config_file.hpp"
 
 #include "files/text_file.hpp"

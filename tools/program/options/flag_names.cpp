@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/flag_names.hpp"
 
 #include <algorithm>

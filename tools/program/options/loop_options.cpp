@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/loop_options.hpp"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/matcher_settings.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/model_options.hpp"
 
 #include <algorithm>

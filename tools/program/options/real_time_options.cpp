@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/real_time_options.hpp"
 
 #include <algorithm>

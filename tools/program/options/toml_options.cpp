@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options/toml_options.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/build_info.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Writes the commit that is being built into a header, and leaves the header alone when that has
 # not changed.
 # Usage: cmake -D SOURCE=... -D HEADER=... -P commit.cmake

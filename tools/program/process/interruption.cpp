@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/interruption.hpp"
 
 #include <signal.h>

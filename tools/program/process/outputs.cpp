@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/outputs.hpp"
 
 #include <unistd.h>

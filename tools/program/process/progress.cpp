@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/progress.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/run/frame_json.hpp"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/run/pictures.hpp"
 
 #include <fmt/format.h>

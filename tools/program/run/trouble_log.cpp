@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/run/trouble_log.hpp"
 
 #include <fmt/format.h>

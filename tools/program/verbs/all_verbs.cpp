@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/verbs/all_verbs.hpp"
 
 #include <utility>

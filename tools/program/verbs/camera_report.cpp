@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/verbs/camera_report.hpp"
 
 #include <fmt/format.h>
