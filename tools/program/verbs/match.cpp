@@ -24,9 +24,6 @@
 namespace seqloop::program {
 namespace {
 
-// A recording is there whole, so that places can be read once for many frames.
-constexpr std::size_t frames_at_once = 64;
-
 struct MatchSettings {
   std::filesystem::path reference;
   std::filesystem::path query;
@@ -53,7 +50,8 @@ void match(const MatchSettings& settings, Faults faults) {
   const bool closing = settings.reference.empty();
   MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
-  config.frames_at_once = frames_at_once;
+  // A recording is there whole, so that places can be read once for many frames.
+  config.frames_at_once = MatcherConfig::most_frames_at_once;
   std::optional<files::Matrix> query;
   std::optional<files::Matrix> reference;
   if (settings.query.empty()) {
