@@ -277,6 +277,57 @@ TEST_F(BadInput, AnInterruptedRunEndsInOrder) {
 }
 
 TEST_F(BadInput, MatchListsAndTruths) {
+TEST_F(BadInput, AFileMayNotGrowBeyondWhatTheUserIsAllowed) {
+  write_npy("long.npy", oracle::drive(1, 400, 12));
+  const std::string match =
+      "match --method seqcnnslam --reference long.npy --query long.npy --out m.csv";
+  const test::Outcome outcome =
+      run("--version >/dev/null; ulimit -f 1; '" SEQLOOP_BINARY "' " + match);
+  EXPECT_EQ(outcome.exit_code, 1) << "no signal";
+  EXPECT_NE(outcome.err.find("m.csv: cannot be written: File too large"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(listing().find("m.csv"), std::string::npos) << listing();
+  EXPECT_EQ(run("--version >/dev/null; ulimit -f 0; '" SEQLOOP_BINARY "' plan").exit_code, 1);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they want terabytes
+TEST_F(BadInput, WhereMemoryIsShortTheProgramStillEnds) {
+  // Enough for the work, and too little for a second thread of OpenBLAS, whose memory comes in
+  // pieces of 128 MiB.
+  const std::string match =
+      "match --method seqcnnslam --reference good.npy --query good.npy --out m.csv";
+  for (const std::string& arguments : {std::string("plan"), match}) {
+    const test::Outcome outcome =
+        run("--version >/dev/null; ulimit -v 400000; timeout -s KILL 60 '" SEQLOOP_BINARY "' " +
+            arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  EXPECT_TRUE(exists("m.csv"));
+}
+#endif
+
+TEST_F(BadInput, NothingFromOutsideSpeaksToTheTerminal) {
+  const std::string red = "\x1B[31mred\n.npy";
+  const test::Outcome refused = run("match --method seqcnnslam --out m.csv --query '" + red + "'");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("\\x1B[31mred\\x0A.npy: "), std::string::npos) << refused.err;
+  EXPECT_EQ(refused.err.find('\x1B'), std::string::npos);
+  std::filesystem::copy_file(file("good.npy"), file(red));
+  const test::Outcome done = run(
+      "match --method seqcnnslam --query good.npy --reference good.npy --out '" + red + ".csv'");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err.find('\x1B'), std::string::npos);
+}
+
+TEST_F(BadInput, ALongCellIsNoLongMessage) {
+  folder_.write("list.csv",
+                "query,match,score,uniqueness\n1," + std::string(10'000'000, 'x') + ",0.5,0.5\n");
+  const test::Outcome outcome = run("eval --matches list.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_LT(outcome.err.size(), 5'000U);
+  EXPECT_NE(outcome.err.find("list.csv:2"), std::string::npos) << outcome.err.substr(0, 200);
+}
+
   folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n1,2,0.5,0.5\n");
   expect_refused("eval --matches list.csv", {"twice"});
   folder_.write("list.csv", "query,match,score,uniqueness\n1,one,0.5,0.5\n");
