@@ -131,6 +131,9 @@ TEST_F(BadInput, ConfigurationFiles) {
                                "'budget-totals'", "did you mean 'budget-total'"});
   folder_.write("c.toml", "vmin = 5.0\nk = 0\n");
   expect_match_refused(match, {"vmin: 5", "k: 0"});
+  folder_.write("c.toml", "budget-total = 30\n[budget]\ntotal = 40\n");
+  expect_refused("run --source good.npy --config c.toml",
+                 {"c.toml:3", "'budget.total'", "'budget-total'", "c.toml:1"});
   folder_.write("c.toml", "ds = [1\n");
   expect_match_refused(match, {"c.toml:", "not TOML"});
   folder_.write("c.toml", "ds = 2.5\nstandardise = 3\npaper = \"yes\"\nmethod = 1\n");
