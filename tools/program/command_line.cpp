@@ -101,6 +101,9 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
       faults.push_back(std::move(fault));
     }
   }
+  std::vector<FileUse> files = verb.options.files();
+  files.push_back({"config", Access::reads, given.config_file});
+  refuse_overwriting(faults, files);
   return faults;
 }
 
@@ -180,7 +183,6 @@ int exit_code_of(int argc, char** argv, const std::vector<Verb>& verbs) {
   return failed_while_running;
 }
 
-}  // namespace seqloop::program
 }  // namespace
 
 void run_program(int argc, char** argv, const std::vector<Verb>& verbs) {
@@ -194,3 +196,4 @@ void run_program(int argc, char** argv, const std::vector<Verb>& verbs) {
 #endif
 }
 
+}  // namespace seqloop::program

@@ -42,6 +42,13 @@ void set_training(std::vector<std::filesystem::path>& drives, std::string_view t
   }
 }
 
+std::vector<FileUse> all_read(const std::string& flag,
+                              const std::vector<std::filesystem::path>& paths) {
+  std::vector<FileUse> uses;
+  for (const std::filesystem::path& path : paths) uses.push_back({flag, Access::reads, path});
+  return uses;
+}
+
 /// No more than can be learned from as many pictures and features as are taken.
 std::size_t parse_count_to(std::string_view text, std::size_t most) {
   const std::size_t count = parse_count(text);

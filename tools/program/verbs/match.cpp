@@ -12,7 +12,6 @@
 #include "program/drives/map_builder.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/process/interruption.hpp"
-#include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
@@ -62,7 +61,6 @@ void match(const MatchSettings& settings, Faults faults) {
   if (!closing)
     collect(faults, [&] { reference = read_descriptors(settings.reference, config.difference); });
   std::unique_ptr<files::OutputFile> out;
-  refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out M.csv"});
   } else {
@@ -118,10 +116,10 @@ Verb match_verb() {
             "Match the descriptors of one drive with those of another, or with its own",
             {},
             [settings](Faults faults) { match(*settings, std::move(faults)); }};
-  verb.options.path("reference", settings->reference,
+  verb.options.path("reference", Access::reads, settings->reference,
                     "descriptors of the map, .npy [close loops within the query]");
-  verb.options.path("query", settings->query, "descriptors of the drive, .npy");
-  verb.options.path("out", settings->out, "match list, CSV");
+  verb.options.path("query", Access::reads, settings->query, "descriptors of the drive, .npy");
+  verb.options.path("out", Access::writes, settings->out, "match list, CSV");
   add_matcher_options(verb.options, settings->matcher);
   return verb;
 }

@@ -169,15 +169,16 @@ Verb run_verb() {
       "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
         run(*settings, std::move(faults));
       }};
-  verb.options.path("source", settings->source,
+  verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0), image folder, video file or descriptors (.npy)");
-  verb.options.path("reference", settings->reference,
+  verb.options.path("reference", Access::reads, settings->reference,
                     "drive to localise in [close loops within the source]");
-  verb.options.path("out", settings->out, "one JSON object a frame [standard output]");
-  verb.options.path("summary", settings->summary,
+  verb.options.path("out", Access::writes, settings->out,
+                    "one JSON object a frame [standard output]");
+  verb.options.path("summary", Access::writes, settings->summary,
                     "counts and latency histograms of the run, as JSON [none]");
-  verb.options.path("pictures", settings->pictures,
-                    "folder for the difference matrix and a sheet of matched pairs");
+  verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
+                      "folder for the difference matrix and a sheet of matched pairs");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "
                     "as it goes [max]",
