@@ -63,8 +63,15 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.text("descriptor", settings.descriptor,
                "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
-  options.path("model", settings.model.model,
-               "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]");
+  options.add({"model", ValueKind::text,
+               "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]",
+               [&settings](std::string_view value) { settings.model.model = value; },
+               [&settings] {
+                 return all_read("model",
+                                 settings.model.model.empty()
+                                     ? std::vector<std::filesystem::path>()
+                                     : model_files(settings.model, settings.model_flags_given));
+               }});
   const OptionTable model = model_options(settings.model);
   for (Option option : model.options()) {
     option.set = [&settings, name = option.name, set = option.set](std::string_view value) {
@@ -75,7 +82,8 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   }
   options.add({"training", ValueKind::text,
                "drives to learn from, image folders or videos, with commas between",
-               [&settings](std::string_view value) { set_training(settings.training, value); }});
+               [&settings](std::string_view value) { set_training(settings.training, value); },
+               [&settings] { return all_read("training", settings.training); }});
   options.add(
       {"words", ValueKind::count, "words: size of the vocabulary [500]",
        [&settings](std::string_view value) { settings.words = parse_count_to(value, 20'000); }});
@@ -117,6 +125,16 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
   for (const std::string& note : source.notes()) {
     say("{}: {}", path.string(), note);
+  }
+}
+
+void tell_blank(const std::filesystem::path& path, std::uint64_t blank, std::uint64_t frames) {
+  if (blank == 0) return;
+  if (blank < frames) {
+    say("{}: {} of {} frames are blank, without any feature", path.string(), blank, frames);
+  } else {
+    say("{}: all frames are blank, without any feature: there is nothing to recognise a place by",
+        path.string());
   }
 }
 

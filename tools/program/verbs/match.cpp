@@ -16,6 +16,7 @@
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/detector.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -82,19 +83,24 @@ void match(const MatchSettings& settings, Faults faults) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
     Progress mapping("mapping", drive.frame_count());
-    fill_map(map, drive, nullptr, config, mapping);
+    const std::size_t blank_places = fill_map(map, drive, nullptr, config, mapping);
+    tell_blank(settings.reference, blank_places, map.size());
   }
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
+  std::size_t blank_frames = 0;
   std::vector<std::span<const float>> frames;
   std::vector<FrameReport> reports(config.frames_at_once);
   for (std::size_t row = 0; row < query->rows; row += frames.size()) {
     stop_if_interrupted();
     frames.clear();
     const std::size_t last = std::min(row + config.frames_at_once, query->rows);
-    for (std::size_t next = row; next < last; ++next) frames.push_back(query->row(next));
+    for (std::size_t next = row; next < last; ++next) {
+      frames.push_back(query->row(next));
+      if (blank(config.difference, frames.back())) ++blank_frames;
+    }
     detector.steps(frames, std::span(reports).first(frames.size()));
     for (const FrameReport& report : std::span(reports).first(frames.size())) {
       progress.step();
@@ -105,6 +111,7 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   progress.done();
   out->commit();
+  tell_blank(settings.query, blank_frames, query->rows);
   say("{} of {} frames answered, in {}", answered, query->rows, settings.out.string());
 }
 

@@ -22,6 +22,7 @@
 #include "program/run/source_numbers.hpp"
 #include "program/run/trouble_log.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
 #include "seqloop/pipeline.hpp"
@@ -64,8 +65,10 @@ void run(const RunSettings& settings, Faults faults) {
   PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
-    fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
+    const std::size_t blank_places =
+        fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
     tell_notes(settings.reference, *setup.reference);
+    tell_blank(settings.reference, blank_places, map.size());
   }
   Detector detector(setup.config, map);
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
@@ -83,6 +86,7 @@ void run(const RunSettings& settings, Faults faults) {
 
   const bool closing = settings.reference.empty();
   SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
   std::exception_ptr unwritten;
@@ -96,6 +100,8 @@ void run(const RunSettings& settings, Faults faults) {
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
+    const std::span<const float> seen = processed->descriptor;
+    if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     try {
       setup.out->write(frame_json(*processed, state));
       setup.out->flush();
@@ -123,6 +129,7 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
+  tell_blank(settings.source, blank_frames, summary.frames());
   const bool none_readable =
       summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
   if (none_readable && setup.recording) {
