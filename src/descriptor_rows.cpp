@@ -139,7 +139,7 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
                              std::span<const std::span<std::uint16_t>> out) const noexcept {
   if (out.empty()) return;
-  std::array<std::int32_t, most_at_once * block_abreast> dots;
+  std::array<std::int32_t, MatcherConfig::most_frames_at_once * block_abreast> dots;
   in_pieces(out.front().size(), block_abreast, [&](std::size_t begin, std::size_t count) {
     const auto compare_with = [&](std::size_t first, std::span<const std::span<std::uint16_t>> to) {
       kernels_->dot_block(queries.small(first).data(), to.size(), small(begin).data(), stride_,

@@ -142,17 +142,21 @@ void Detector::steps(std::span<const std::span<const float>> descriptors,
                      std::span<FrameReport> reports) noexcept {
   const bool at_once = config_.candidates == Candidates::all && config_.use == Use::localise &&
                        config_.arithmetic == Arithmetic::int8 && !config_.enhance;
+  const std::size_t count = std::min(descriptors.size(), reports.size());
   if (!at_once) {
-    for (std::size_t i = 0; i < descriptors.size(); ++i) reports[i] = step(descriptors[i]);
+    for (std::size_t i = 0; i < count; ++i) reports[i] = step(descriptors[i]);
     return;
   }
-  const std::uint64_t first = queries_.frames();
-  std::array<bool, DescriptorRows::most_at_once> readable;
-  for (std::size_t i = 0; i < descriptors.size(); ++i) readable[i] = take_query(descriptors[i]);
-  slices_.fill_newest(*map_, descriptors.size());
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    reports[i] = answer(first + i, readable[i]);
-    reports[i].work.distances += map_->size();
+  for (std::size_t begin = 0; begin < count; begin += config_.frames_at_once) {
+    const std::size_t together = std::min(config_.frames_at_once, count - begin);
+    const std::uint64_t first = queries_.frames();
+    std::array<bool, MatcherConfig::most_frames_at_once> readable;
+    for (std::size_t i = 0; i < together; ++i) readable[i] = take_query(descriptors[begin + i]);
+    slices_.fill_newest(*map_, together);
+    for (std::size_t i = 0; i < together; ++i) {
+      FrameReport& report = reports[begin + i] = answer(first + i, readable[i]);
+      report.work.distances += map_->size();
+    }
   }
 }
 

@@ -93,7 +93,7 @@ std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std
 }
 
 void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexcept {
-  std::array<std::span<std::uint16_t>, DescriptorRows::most_at_once> columns;
+  std::array<std::span<std::uint16_t>, MatcherConfig::most_frames_at_once> columns;
   const std::uint64_t first = queries_->frames() - count;
   for (std::size_t i = 0; i < count; ++i) {
     columns[i] = whole_differences_.take_over(first + i, map.size());

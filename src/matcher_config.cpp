@@ -116,7 +116,8 @@ Faults validate(const MatcherConfig& config) {
                       "set full_map to refuse, or switch enhance off"});
   }
   check_range(faults, "exclude", config.exclude, 1, many);
-  check_range(faults, "frames_at_once", config.frames_at_once, 1, 64);
+  check_range(faults, "frames_at_once", config.frames_at_once, 1,
+              MatcherConfig::most_frames_at_once);
   check_range(faults, "standardisation.prior_frames", config.standardisation.prior_frames, 1, many);
   check_range(faults, "standardisation.horizon", config.standardisation.horizon, 1, many);
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {

@@ -29,6 +29,7 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   processed.report = detector_->step(seen.descriptor);
   const Nanoseconds matched = clock_->now();
 
+  processed.descriptor = seen.descriptor;
   processed.fault = seen.fault;
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
     processed.fault = "its descriptor is all zero, not of unit length, or of the wrong size";

@@ -6,5 +6,5 @@
 
 int main(int argc, char** argv) {
   using namespace seqloop;
-  return program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
+  program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
 }

@@ -66,8 +66,10 @@ class Detector {
   /// Takes several frames of a recording: the same answers as by as many steps. Where all rows are
   /// candidates and localising is by `int8`, places are read once for all of these frames, which is
   /// several times faster.
-  /// @param descriptors at most `MatcherConfig::frames_at_once`, each as `step` takes it
-  /// @param reports     as many, written
+  /// @param descriptors any number, each as `step` takes it; `MatcherConfig::frames_at_once` of
+  ///   them share a reading of the places
+  /// @param reports     as many, written. Where they are fewer, the frames beyond them are not
+  ///   taken.
   /// Work: as many steps. Allocates: never.
   void steps(std::span<const std::span<const float>> descriptors,
              std::span<FrameReport> reports) noexcept;

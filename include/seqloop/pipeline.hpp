@@ -26,7 +26,8 @@ struct StageTimes {
 
 /// What the pipeline says of one frame.
 struct ProcessedFrame {
-  Frame frame;  ///< as grabbed; valid until the next frame
+  Frame frame;                        ///< as grabbed; valid until the next frame
+  std::span<const float> descriptor;  ///< [D]; empty where there is none. Valid as long
   FrameReport report;
   std::string_view fault;  ///< why the gate is `frame_error` or `no_frame`; empty otherwise
   StageTimes times;

@@ -16,13 +16,13 @@
 #include <system_error>
 #include <utility>
 
+#include "files/partial.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::files {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{64} * 1024;
-constexpr int most_tries = 100;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -91,16 +91,12 @@ void OutputFile::open_beside() {
   if (!std::filesystem::is_directory(folder, error))
     throw SetupError(Fault{path_.string(), folder.string() + " is not a folder"});
 
-  const std::string stem =
-      "." + path_.filename().string() + ".partial-" + std::to_string(::getpid());
-  for (int attempt = 0; attempt < most_tries; ++attempt) {
-    partial_ = folder / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
-    descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ >= 0) return;
-    if (errno != EEXIST) break;
-  }
-  throw SetupError(Fault{path_.string(), "cannot be created: " + reason(errno),
-                         "choose a folder that may be written"});
+  Partial made = make_partial(path_, PartialKind::file);
+  if (made.descriptor < 0)
+    throw SetupError(Fault{path_.string(), "cannot be created: " + reason(errno),
+                           "choose a folder that may be written"});
+  partial_ = std::move(made.path);
+  descriptor_ = made.descriptor;
 }
 
 bool OutputFile::rewindable() const noexcept {
@@ -110,8 +106,8 @@ bool OutputFile::rewindable() const noexcept {
 
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
-  ::close(descriptor_);
   if (!partial_.empty()) ::unlink(partial_.c_str());
+  ::close(descriptor_);
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -174,6 +170,8 @@ void OutputFile::commit() {
   flush();
   if (!partial_.empty() && ::fsync(descriptor_) != 0)
     throw IoError(name(), "cannot be written to the disk: " + reason(errno));
+  // Nobody takes it for abandoned before it has its name.
+  const int lock = partial_.empty() ? -1 : ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
   // After a failed close nobody knows what reached the disk, so that is a failed write too.
   const int closed = ::close(std::exchange(descriptor_, -1));
   const int close_error = errno;
@@ -181,8 +179,10 @@ void OutputFile::commit() {
     if (closed != 0) throw IoError(name(), "cannot be closed: " + reason(close_error));
     return;
   }
-  if (closed == 0 && std::rename(partial_.c_str(), path_.c_str()) == 0) return;
+  const bool renamed = closed == 0 && std::rename(partial_.c_str(), path_.c_str()) == 0;
   const int error = closed != 0 ? close_error : errno;
+  if (lock >= 0) ::close(lock);
+  if (renamed) return;
   ::unlink(partial_.c_str());
   throw IoError(name(), "cannot be completed: " + reason(error));
 }

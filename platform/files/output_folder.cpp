@@ -11,14 +11,13 @@
 #include <system_error>
 #include <utility>
 
+#include "files/partial.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::files {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_tries = 100;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -59,30 +58,20 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   if (fs::exists(status) && on_other_devices(path_, around))
     throw SetupError(Fault{shown, "is the top of a file system, which cannot be replaced",
                            "name a folder in it"});
-  make_beside(shown);
+  Partial made = make_partial(path_, PartialKind::folder);
+  if (made.descriptor < 0)
+    throw SetupError(
+        Fault{shown, "cannot be created: " + reason(errno), "choose a folder that may be written"});
+  partial_ = std::move(made.path);
+  lock_ = made.descriptor;
   // What takes a folder's place is as private as the folder was.
   if (fs::exists(status)) fs::permissions(partial_, status.permissions(), error);
-}
-
-void OutputFolder::make_beside(const std::string& shown) {
-  const std::string stem =
-      "." + path_.filename().string() + ".partial-" + std::to_string(::getpid());
-  for (int attempt = 0; attempt < most_tries; ++attempt) {
-    const std::string name = attempt == 0 ? stem : stem + "-" + std::to_string(attempt);
-    const fs::path beside = path_.parent_path() / name;
-    if (::mkdir(beside.c_str(), 0777) == 0) {
-      partial_ = beside;
-      return;
-    }
-    if (errno != EEXIST) break;
-  }
-  throw SetupError(
-      Fault{shown, "cannot be created: " + reason(errno), "choose a folder that may be written"});
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code error;
   if (!partial_.empty()) fs::remove_all(partial_, error);
+  ::close(lock_);
 }
 
 void OutputFolder::write(const std::string& name, std::span<const std::byte> bytes) {

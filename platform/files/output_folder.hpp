@@ -14,8 +14,8 @@ namespace seqloop::files {
 /// A folder that appears under its name only when it is complete.
 ///
 /// Until `commit` its files lie in `.NAME.partial-PID` beside it; the destructor removes that
-/// folder if there was no commit, and a process that is killed leaves nothing else behind. A
-/// symbolic link to an empty folder is followed.
+/// folder if there was no commit. A process that is killed leaves it behind, and whoever makes the
+/// same folder next removes it. A symbolic link to an empty folder is followed.
 class OutputFolder {
  public:
   /// Throws SetupError: there is something under that name already other than an empty folder, the
@@ -39,10 +39,9 @@ class OutputFolder {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
  private:
-  void make_beside(const std::string& shown);
-
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< empty after the commit
+  int lock_ = -1;                  ///< on that folder
 };
 
 }  // namespace seqloop::files

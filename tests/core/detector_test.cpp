@@ -265,6 +265,31 @@ TEST(Detector, SeveralFramesAtOnceAreAsManySteps) {
   }
 }
 
+TEST(Detector, TakesMoreFramesThanItReadsPlacesForAtOnce) {
+  const oracle::Vectors reference = oracle::drive(9, 150, 40);
+  const oracle::Vectors query = oracle::drive(9, 140, 40, 0.3F);
+  const std::vector<std::span<const float>> frames(query.begin(), query.end());
+  for (const std::size_t at_once : {1U, 5U, 64U}) {
+    for (const std::size_t reports_given : {0U, 99U, 140U}) {
+      SCOPED_TRACE(std::to_string(at_once) + " at once, " + std::to_string(reports_given));
+      MatcherConfig config;
+      config.candidates = Candidates::all;
+      config.sequence_length = 12;
+      const auto wanted = reports(reference, query, config);
+      config.frames_at_once = at_once;
+      PlaceMap map = map_of(reference, config);
+      Detector detector(config, map);
+      std::vector<FrameReport> given(reports_given);
+      detector.steps(frames, given);
+      for (std::size_t frame = 0; frame < given.size(); ++frame) {
+        expect_same_answer(given[frame], wanted[frame]);
+        EXPECT_EQ(given[frame].work, wanted[frame].work) << frame;
+      }
+      EXPECT_EQ(detector.step(query[0]).newest, reports_given) << "none was taken without a report";
+    }
+  }
+}
+
 TEST(Detector, SameInputSameReports) {
   const oracle::Vectors drive = two_laps(2, 120, 30);
   MatcherConfig config;

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <array>
+#include <csignal>
 
 #include "expect_setup_error.hpp"
 #include "temporary_folder.hpp"
@@ -70,6 +74,56 @@ TEST(OutputFile, TwoAtOnceDoNotShareAFile) {
   second.commit();
   first.commit();
   EXPECT_EQ(read_all(folder.path() / "out"), "1");
+}
+
+// What a killed process leaves behind has the name, and nobody holds it.
+TEST(OutputFile, RemovesWhatAKilledProcessLeftOfTheSameOutput) {
+  const TemporaryFolder folder;
+  // Its number may be in use again, even by this process.
+  const std::string own = ".out.partial-" + std::to_string(::getpid());
+  const std::vector<std::string> left{".out.partial-1", ".out.partial-99999999-3", own};
+  const std::vector<std::string> others{".out.partial-",     ".out.partial-12x",   "out.partial-12",
+                                        ".out.partial-1-2-", ".out.csv.partial-5", "out"};
+  for (const std::string& name : left) folder.write(name, "half");
+  for (const std::string& name : others) folder.write(name, "theirs");
+  std::filesystem::create_directory(folder.path() / ".out.partial-7");
+  std::filesystem::create_symlink("out", folder.path() / ".out.partial-8");
+  const OutputFile file(folder.path() / "out");
+  for (const std::string& name : {left[0], left[1]}) {
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
+  }
+  for (const std::string& name : others) {
+    EXPECT_EQ(read_all(folder.path() / name), "theirs") << name;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / ".out.partial-7"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / ".out.partial-8"));
+  EXPECT_EQ(entries(folder.path()), others.size() + 3U);
+}
+
+TEST(OutputFile, LeavesAloneWhatALivingProcessWrites) {
+  const TemporaryFolder folder;
+  std::array<int, 2> told{};
+  ASSERT_EQ(::pipe(told.data()), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const OutputFile file(folder.path() / "out");
+    (void)::write(told[1], "x", 1);
+    ::pause();
+    ::_exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(told[0], &byte, 1), 1);
+  { const OutputFile file(folder.path() / "out"); }
+  remove_abandoned(folder.path());
+  EXPECT_EQ(entries(folder.path()), 1U) << "the child's";
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  folder.write(".other.partial-4", "half");
+  folder.write("other", "whole");
+  remove_abandoned(folder.path());
+  EXPECT_EQ(entries(folder.path()), 1U);
+  EXPECT_EQ(read_all(folder.path() / "other"), "whole");
+  for (const int end : told) ::close(end);
 }
 
 TEST(OutputFile, StaysAsPrivateAsItWas) {

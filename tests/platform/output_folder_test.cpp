@@ -73,6 +73,23 @@ TEST(OutputFolder, SaysWhyItCannotBeMade) {
   EXPECT_TRUE(test::says(refused("/proc/out"), "cannot be created"));
 }
 
+TEST(OutputFolder, RemovesWhatAKilledProcessLeftOfTheSameFolder) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {".out.partial-1", ".out.partial-2-1", ".else.partial-1"}) {
+    fs::create_directory(folder.path() / name);
+    folder.write(std::string(name) + "/000000.png", "half");
+  }
+  folder.write(".out.partial-3", "a file");
+  OutputFolder first(folder.path() / "out");
+  const OutputFolder second(folder.path() / "out");
+  EXPECT_EQ(entries(folder.path()), 4U) << "two others', and the two that are at work";
+  EXPECT_TRUE(fs::exists(folder.path() / ".else.partial-1/000000.png"));
+  EXPECT_TRUE(fs::exists(folder.path() / ".out.partial-3"));
+  first.write("a.txt", "a");
+  first.commit();
+  EXPECT_TRUE(fs::exists(folder.path() / "out/a.txt"));
+}
+
 TEST(OutputFolder, DoesNotReplaceWhatCameMeanwhile) {
   const test::TemporaryFolder folder;
   {

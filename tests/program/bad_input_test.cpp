@@ -132,6 +132,9 @@ TEST_F(BadInput, ConfigurationFiles) {
                                "'budget-totals'", "did you mean 'budget-total'"});
   folder_.write("c.toml", "vmin = 5.0\nk = 0\n");
   expect_match_refused(match, {"vmin: 5", "k: 0"});
+  folder_.write("c.toml", "budget-total = 30\n[budget]\ntotal = 40\n");
+  expect_refused("run --source good.npy --config c.toml",
+                 {"c.toml:3", "'budget.total'", "'budget-total'", "c.toml:1"});
   folder_.write("c.toml", "ds = [1\n");
   expect_match_refused(match, {"c.toml:", "not TOML"});
   folder_.write("c.toml", "ds = 2.5\nstandardise = 3\npaper = \"yes\"\nmethod = 1\n");
@@ -207,6 +210,53 @@ TEST_F(BadInput, AnOutputIsNeverAnInput) {
   std::filesystem::create_directory(file("drive"));
   folder_.write("drive/0.pgm", "P5 1 1 255\nx");
   expect_refused("describe --source drive --out drive/0.pgm", {"destroy an input"});
+  std::filesystem::create_symlink("drive/0.pgm", file("picture"));
+  std::filesystem::create_symlink("../good.npy", file("drive/1.pgm"));
+  expect_refused("describe --source drive --out picture", {"destroy an input"});
+  expect_refused("describe --source drive --out good.npy", {"destroy an input (source)"});
+  expect_refused("run --source drive --out r.jsonl --pictures drive/.", {"among those of drive/."});
+  EXPECT_EQ(test::read_all(file("good.npy")), good);
+}
+
+TEST_F(BadInput, AnOutputIsNoModelAndNoSettingsEither) {
+  std::filesystem::create_directory(file("drive"));
+  folder_.write("drive/0.pgm", std::string("P5 4 4 255\n") + std::string(16, 'x'));
+  std::filesystem::copy_file(SEQLOOP_TEST_DATA "/gray_chain.onnx", file("net.onnx"));
+  folder_.write("net.toml", "scale = 2\nconfig-model = \"net.prototxt\"\n");
+  folder_.write("net.prototxt", "x");
+  folder_.write("c.toml", "ds = 5\n");
+  std::filesystem::create_hard_link(file("net.onnx"), file("twin"));
+  std::filesystem::create_symlink(".", file("here"));
+  for (const std::string out : {"net.onnx", "./net.onnx", "twin", "here/net.toml",
+                                "../" + folder_.path().filename().string() + "/net.prototxt"}) {
+    expect_refused("describe --source drive --model net.onnx --out " + out,
+                   {"destroy an input (model)"});
+  }
+  const std::string config = " --config c.toml --out here/c.toml";
+  expect_refused("describe --source drive" + config, {"destroy an input (config)"});
+  expect_refused("match --query good.npy" + config, {"destroy an input (config)"});
+  expect_refused("run --source good.npy" + config, {"destroy an input (config)"});
+  expect_refused("run --source good.npy --config c.toml --out r --summary ./c.toml",
+                 {"destroy an input (config)"});
+  folder_.write("out.toml", "out = \"./out.toml\"\n");
+  expect_refused("match --query good.npy --config out.toml", {"destroy an input (config)"});
+  EXPECT_EQ(test::read_all(file("c.toml")), "ds = 5\n");
+}
+
+TEST_F(BadInput, NoTwoOutputsAreOne) {
+  std::filesystem::create_directory(file("p"));
+  std::filesystem::create_symlink("p", file("same"));
+  folder_.write("old", "");
+  std::filesystem::create_hard_link(file("old"), file("twin"));
+  const std::string run = "run --source good.npy --exclude 20 ";
+  for (const std::string names :
+       {"--out a.json --summary ./a.json", "--out p/a.json --summary same/a.json",
+        "--out old --summary twin", "--out - --summary /dev/stdout"}) {
+    expect_refused(run + names, {"summary: is the same file as --out"});
+  }
+  expect_refused(run + "--summary both >both", {"summary: is the same file as --out"});
+  expect_refused(run + "--pictures p --out same/matches.png", {"is the same file as --out"});
+  EXPECT_EQ(Program::run(run + "--out /dev/null --summary - >/dev/null").exit_code, 0);
 }
 
 TEST_F(BadInput, OutputPathsAreCheckedWithEverythingElse) {
@@ -226,6 +276,57 @@ TEST_F(BadInput, StandardStreamsThatAreFullOrClosed) {
   EXPECT_EQ(run(match + "2>&-").exit_code, 0);
   EXPECT_EQ(run(match + "<&- 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_all(file("m.csv")).find("seqloop:"), std::string::npos);
+}
+
+TEST_F(BadInput, AFileMayNotGrowBeyondWhatTheUserIsAllowed) {
+  write_npy("long.npy", oracle::drive(1, 400, 12));
+  const std::string match =
+      "match --method seqcnnslam --reference long.npy --query long.npy --out m.csv";
+  const test::Outcome outcome =
+      run("--version >/dev/null; ulimit -f 1; '" SEQLOOP_BINARY "' " + match);
+  EXPECT_EQ(outcome.exit_code, 1) << "no signal";
+  EXPECT_NE(outcome.err.find("m.csv: cannot be written: File too large"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(listing().find("m.csv"), std::string::npos) << listing();
+  EXPECT_EQ(run("--version >/dev/null; ulimit -f 0; '" SEQLOOP_BINARY "' plan").exit_code, 1);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they want terabytes
+TEST_F(BadInput, WhereMemoryIsShortTheProgramStillEnds) {
+  // Enough for the work, and too little for a second thread of OpenBLAS, whose memory comes in
+  // pieces of 128 MiB.
+  const std::string match =
+      "match --method seqcnnslam --reference good.npy --query good.npy --out m.csv";
+  for (const std::string& arguments : {std::string("plan"), match}) {
+    const test::Outcome outcome =
+        run("--version >/dev/null; ulimit -v 400000; timeout -s KILL 60 '" SEQLOOP_BINARY "' " +
+            arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  EXPECT_TRUE(exists("m.csv"));
+}
+#endif
+
+TEST_F(BadInput, NothingFromOutsideSpeaksToTheTerminal) {
+  const std::string red = "\x1B[31mred\n.npy";
+  const test::Outcome refused = run("match --method seqcnnslam --out m.csv --query '" + red + "'");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("\\x1B[31mred\\x0A.npy: "), std::string::npos) << refused.err;
+  EXPECT_EQ(refused.err.find('\x1B'), std::string::npos);
+  std::filesystem::copy_file(file("good.npy"), file(red));
+  const test::Outcome done = run(
+      "match --method seqcnnslam --query good.npy --reference good.npy --out '" + red + ".csv'");
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err.find('\x1B'), std::string::npos);
+}
+
+TEST_F(BadInput, ALongCellIsNoLongMessage) {
+  folder_.write("list.csv",
+                "query,match,score,uniqueness\n1," + std::string(10'000'000, 'x') + ",0.5,0.5\n");
+  const test::Outcome outcome = run("eval --matches list.csv");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_LT(outcome.err.size(), 5'000U);
+  EXPECT_NE(outcome.err.find("list.csv:2"), std::string::npos) << outcome.err.substr(0, 200);
 }
 
 TEST_F(BadInput, TextFilesThatAreNone) {

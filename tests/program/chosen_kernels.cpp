@@ -28,5 +28,5 @@ const IntegerKernels& best_integer_kernels() noexcept {
 
 int main(int argc, char** argv) {
   using namespace seqloop;
-  return program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
+  program::run_program(argc, argv, program::all_verbs(experiment::run_experiment));
 }

@@ -188,6 +188,77 @@ TEST_F(Experiments, GoOnWhereTheyWere) {
   EXPECT_NE(err.find("matching 5/5"), std::string::npos) << err;
 }
 
+TEST_F(Experiments, FillNoFolderThatIsSomebodyElses) {
+  write_experiment(std::string(drives) + pair + methods);
+  const auto refused = [&](const std::string& folder, const std::string& word) {
+    const test::Outcome outcome = run("eval --experiment e.toml --out " + folder);
+    EXPECT_EQ(outcome.exit_code, 2) << folder;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_FALSE(exists(folder + "/runs"));
+  };
+  std::filesystem::create_directory(file("site"));
+  folder_.write("site/index.html", "<html>mine</html>");
+  refused("site", "holds something that no experiment has left");
+  EXPECT_EQ(test::read_all(file("site/index.html")), "<html>mine</html>");
+  refused("b/../a", "would come among those of b/../a, which is read");
+  std::filesystem::create_directory(file("photos"));
+  folder_.write("photos/1.png", "a picture of no experiment");
+  refused("photos", "holds something that no experiment has left");
+
+  std::filesystem::create_directory(file("out"));
+  expect_done();
+  EXPECT_EQ(expect_done().exit_code, 0) << "its own report is replaced";
+  folder_.write("out/index.html", "<html>mine</html>");
+  const test::Outcome outcome = run_it();
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(test::read_all(file("out/index.html")), "<html>mine</html>");
+}
+
+TEST_F(Experiments, WriteOverNothingThatTheyRead) {
+  std::filesystem::create_directories(file("out/runs"));
+  std::filesystem::create_directory(file("out/descriptors"));
+  folder_.write("out/results.csv", "query,reference\n1,1\n");
+  write_experiment(std::string(drives) + pair + "truth = \"out/results.csv\"\n" + methods);
+  const test::Outcome outcome = run_it();
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("out/results.csv would destroy an input"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(test::read_all(file("out/results.csv")), "query,reference\n1,1\n");
+}
+
+TEST_F(Experiments, MakeDamagedPicturesAnew) {
+  write_experiment(std::string(drives) + pair + methods);
+  expect_done();
+  const std::string page = test::read_all(file("out/index.html"));
+  std::vector<std::filesystem::path> pictures;
+  for (const auto& entry : std::filesystem::directory_iterator(file("out/runs"))) {
+    if (entry.path().extension() == ".png") pictures.push_back(entry.path());
+  }
+  ASSERT_EQ(pictures.size(), 2U);
+  std::string png = test::read_all(pictures[0]);
+  png[png.size() / 2] = static_cast<char>(png[png.size() / 2] ^ 1);
+  std::ofstream(pictures[0], std::ios::binary) << png;
+  std::filesystem::resize_file(pictures[1], png.size() / 3);
+  EXPECT_NE(expect_done().err.find("matching 2/2"), std::string::npos);
+  const auto matrices = [](const std::string& html) {
+    return html.substr(html.find("Difference matrices"), html.find("All results"));
+  };
+  EXPECT_EQ(matrices(test::read_all(file("out/index.html"))), matrices(page));
+  EXPECT_EQ(expect_done().err.find("matching"), std::string::npos);
+}
+
+TEST_F(Experiments, RemoveWhatAKilledRunLeft) {
+  std::filesystem::create_directories(file("out/runs"));
+  std::filesystem::create_directory(file("out/descriptors"));
+  folder_.write("out/runs/.both--ours--0123456789abcdef.json.partial-99", "half");
+  folder_.write("out/descriptors/.first--gradients--0123456789abcdef.npy.partial-99-1", "half");
+  write_experiment(std::string(drives) + pair + methods);
+  expect_done();
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(file("out"))) {
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+  }
+}
+
 TEST_F(Experiments, EveryFaultAtOnceBeforeAnyWork) {
   folder_.write("t.csv", "query,reference\n1,1\n40,3\n2,77\n");
   write_experiment(R"(

@@ -258,6 +258,28 @@ TEST_F(Run, SaysThatRowsWereBroughtToUnitLength) {
   EXPECT_NE(outcome.err.find("1 of 60 rows"), std::string::npos) << outcome.err;
 }
 
+TEST_F(Run, SaysThatADriveHasNothingToRecogniseAPlaceBy) {
+  const oracle::Vectors drive = oracle::drive(5, 60, 20);
+  oracle::Vectors half = drive;
+  std::fill(half.begin() + 30, half.end(), std::vector<float>(20, 0.0F));
+  write_npy("good.npy", drive);
+  write_npy("half.npy", half);
+  write_npy("black.npy", oracle::Vectors(60, std::vector<float>(20, 0.0F)));
+  const std::string methods = " --method seqcnnslam --ds 10 --out out";
+  for (const std::string verb : {"match --query ", "run --paper --source "}) {
+    const std::string black = expect_done(verb + "black.npy --reference good.npy" + methods).err;
+    EXPECT_NE(black.find("black.npy: all frames are blank"), std::string::npos) << black;
+    const std::string map = expect_done(verb + "good.npy --reference black.npy" + methods).err;
+    EXPECT_NE(map.find("black.npy: all frames are blank"), std::string::npos) << map;
+    const std::string some = expect_done(verb + "half.npy --reference half.npy" + methods).err;
+    const std::size_t first = some.find("half.npy: 30 of 60 frames are blank");
+    EXPECT_NE(first, std::string::npos) << some;
+    EXPECT_NE(some.find("half.npy: 30 of 60 frames are blank", first + 1), std::string::npos);
+    const std::string good = expect_done(verb + "good.npy --reference good.npy" + methods).err;
+    EXPECT_EQ(good.find("blank"), std::string::npos) << good;
+  }
+}
+
 TEST_F(Run, RunAgreesWithMatchAndCountsItsFrames) {
   write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
   write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));

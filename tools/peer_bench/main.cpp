@@ -7,5 +7,5 @@
 
 int main(int argc, char** argv) {
   using namespace seqloop;
-  return program::run_program(argc, argv, {program::bench_verb({peers::columns, peers::matrices})});
+  program::run_program(argc, argv, {program::bench_verb({peers::columns, peers::matrices})});
 }

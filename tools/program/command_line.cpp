@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <set>
 #include <utility>
@@ -101,6 +102,9 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
       faults.push_back(std::move(fault));
     }
   }
+  std::vector<FileUse> files = verb.options.files();
+  files.push_back({"config", Access::reads, given.config_file});
+  refuse_overwriting(faults, files);
   return faults;
 }
 
@@ -151,12 +155,16 @@ void keep_standard_streams() {
   }
 }
 
-}  // namespace
+/// What fails to be written is told of, and is no sudden death.
+void ignore_write_signals() {
+  std::signal(SIGPIPE, SIG_IGN);  // nobody reads any more
+  std::signal(SIGXFSZ, SIG_IGN);  // the file is as large as the user may make one
+}
 
-int run_program(int argc, char** argv, const std::vector<Verb>& verbs) {
+int exit_code_of(int argc, char** argv, const std::vector<Verb>& verbs) {
   try {
     keep_standard_streams();
-    std::signal(SIGPIPE, SIG_IGN);  // nobody reads any more: a failed write, no sudden death
+    ignore_write_signals();
     opencv::silence_opencv();
     const int exit_code = parse_and_run(argc, argv, verbs);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -174,6 +182,19 @@ int run_program(int argc, char** argv, const std::vector<Verb>& verbs) {
     say("{}", error.what());
   }
   return failed_while_running;
+}
+
+}  // namespace
+
+void run_program(int argc, char** argv, const std::vector<Verb>& verbs) {
+  const int exit_code = exit_code_of(argc, argv, verbs);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  std::exit(exit_code);  // leaks are looked for on the way out
+#else
+  // Everything of ours is written and closed. Libraries are not asked to shut down: where memory is
+  // short, OpenBLAS's threads look for some for ever, and it waits for them.
+  std::_Exit(exit_code);
+#endif
 }
 
 }  // namespace seqloop::program

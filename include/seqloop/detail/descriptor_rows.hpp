@@ -61,10 +61,9 @@ class DescriptorRows {
 
   /// The same of several descriptors, reading each row once for all of them; `int8` alone.
   /// @param query rows of the queries from this one on; behind their last follows their first
-  /// @param out   one column a query, at most `most_at_once`
+  /// @param out   one column a query, at most `MatcherConfig::most_frames_at_once`
   void compare(const DescriptorRows& queries, std::size_t query,
                std::span<const std::span<std::uint16_t>> out) const noexcept;
-  static constexpr std::size_t most_at_once = 64;
 
   /// The difference of two, 0 .. 2 between unit vectors.
   [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;

@@ -125,12 +125,12 @@ std::string head(const Report& report) {
   }
   return fmt::format(
       "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n"
-      "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, "
+      "<meta charset=\"utf-8\"/>\n{5}\n<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\"/>\n<meta name=\"color-scheme\" content=\"light dark\"/>\n"
       "<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n"
       "<p class=\"note\">{3}</p>\n{4}</header>\n<main>\n",
-      escaped(report.title), page_style_sheet(), chart_style_sheet(), line,
-      paragraphs(report.text));
+      escaped(report.title), page_style_sheet(), chart_style_sheet(), line, paragraphs(report.text),
+      page_mark);
 }
 
 std::string section(const char* title, const std::string& content) {

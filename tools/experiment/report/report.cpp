@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ std::string file_name(const Figure& figure, std::size_t number) {
 }
 
 }  // namespace
+
+bool is_report(const std::filesystem::path& page) {
+  constexpr std::size_t head = 1'000;
+  std::string start(head, '\0');
+  std::ifstream(page, std::ios::binary).read(start.data(), head);
+  return start.find(page_mark) != std::string::npos;
+}
 
 void write_report(const Report& report, const std::filesystem::path& folder) {
   std::error_code error;

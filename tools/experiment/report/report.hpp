@@ -14,4 +14,7 @@ namespace seqloop::experiment {
 /// that cannot be used, files::IoError for a write that fails.
 void write_report(const Report& report, const std::filesystem::path& folder);
 
+/// Whether a file is an index.html that `write_report` wrote.
+[[nodiscard]] bool is_report(const std::filesystem::path& page);
+
 }  // namespace seqloop::experiment

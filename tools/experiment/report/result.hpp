@@ -35,6 +35,7 @@ struct Result {
   double seconds = 0.0;              ///< matching alone, all frames
   bool alone = false;                ///< no other run was matched meanwhile
   std::string made_by{};             ///< program and machine
+  std::string matrix{};              ///< fingerprint of its matrix's picture; empty: none
   /// Seconds of the exhaustive search over the same descriptors with the same sequence length, by
   /// `seconds`; NaN where it was not run, or where runs shared a machine.
   double speed_up = std::numeric_limits<double>::quiet_NaN();

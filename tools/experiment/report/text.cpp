@@ -6,27 +6,18 @@
 #include <charconv>
 #include <limits>
 
+#include "program/process/utf8.hpp"
+
 namespace seqloop::experiment {
 namespace {
 
 /// @return bytes of the first character; 0 where there is none that XML may hold
 std::size_t character(std::string_view text) {
-  const auto byte = [&](std::size_t i) -> std::uint32_t {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const std::uint32_t first = byte(0);
-  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
-  if (first < 0xC2 || first > 0xF4) return 0;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  std::uint32_t code = first & (0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return 0;
-    code = (code << 6U) | (byte(i) & 0x3FU);
-  }
-  constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  const bool refused = surrogate || code > 0x10FFFF || (code & 0xFFFEU) == 0xFFFE;
-  return refused || code < least[length] ? 0 : length;
+  const program::Character first = program::first_character(text);
+  const bool control =
+      first.code < 0x20 && first.code != '\t' && first.code != '\n' && first.code != '\r';
+  const bool none = (first.code & 0xFFFEU) == 0xFFFE;
+  return control || none ? 0 : first.bytes;
 }
 
 /// Calls `use` with every character in turn; U+FFFD for what is none.

@@ -77,6 +77,7 @@ struct Experiment {
   std::vector<BestOf> best_of;
   std::vector<Figure> figures;
   std::vector<Table> tables;
+  std::vector<std::filesystem::path> inputs;  ///< files and folders that it names
 
   /// @return the drive of that name, which must be there
   [[nodiscard]] const DriveSpec& drive(const std::string& name) const;

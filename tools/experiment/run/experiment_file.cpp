@@ -58,11 +58,11 @@ class Reader {
   void read_head(const toml::table& root) {
     OptionTable options;
     std::string threshold = "uniqueness";
-    std::filesystem::path data;
+    std::string data;
     options.text("title", experiment_.title, "");
     options.text("text", experiment_.text, "");
     options.flag("timed", experiment_.timed, "");
-    options.path("data", data, "");
+    options.text("data", data, "");
     options.text("threshold-on", threshold, "");
     Section(root, file_, faults_)
         .set_all(options, {"drive", "descriptor", "pair", "method", "figure", "table"});
@@ -89,8 +89,11 @@ class Reader {
     for (const toml::node& section : *list) read(Section(*section.as_table(), file_, faults_));
   }
 
-  void find(std::filesystem::path& path) const {
-    if (!path.empty() && path.is_relative()) path = (data_ / path).lexically_normal();
+  /// Makes a path what it is seen from here, and takes note of it.
+  void find(std::filesystem::path& path) {
+    if (path.empty()) return;
+    if (path.is_relative()) path = (data_ / path).lexically_normal();
+    experiment_.inputs.push_back(path);
   }
 
   void read_drive(const Section& section) {
@@ -98,7 +101,7 @@ class Reader {
     drive.where = section.where();
     drive.name = section.name("drive", names_of(experiment_.drives));
     OptionTable options;
-    options.path("source", drive.source, "");
+    options.path("source", program::Access::reads, drive.source, "");
     options.number("fps", drive.fps, "");
     add_stills_options(options, drive.stills);
     drive.settings = section.set_all(options, {"name", "leave-out"});
@@ -115,7 +118,7 @@ class Reader {
   }
 
   /// Spans, or a file of them, which may change while its name does not.
-  void read_leave_out(const Section& section, DriveSpec& drive) const {
+  void read_leave_out(const Section& section, DriveSpec& drive) {
     const Names text = section.names("leave-out");
     if (text.empty()) return;
     std::filesystem::path file = text.front();

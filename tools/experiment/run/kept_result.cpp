@@ -30,6 +30,7 @@ void for_each_number(AResult& result, Each each) {
   each("seconds", result.seconds);
   each("alone", result.alone);
   each("made_by", result.made_by);
+  each("matrix", result.matrix);
 }
 
 }  // namespace

@@ -38,6 +38,21 @@ files::Matrix read_kept(const std::filesystem::path& file) {
   }
 }
 
+/// Whether a folder is new, empty, or an experiment's already.
+bool may_be_filled(const std::filesystem::path& folder) {
+  const auto page = folder / "index.html";
+  std::error_code error;
+  if (std::filesystem::exists(page, error)) return is_report(page);
+  const auto has = [&](const char* name) { return std::filesystem::exists(folder / name, error); };
+  if (has("descriptors") && has("runs")) return true;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const auto name = entry->path().filename();
+    if (name != "descriptors" && name != "runs") return false;
+  }
+  return true;
+}
+
 class Runner {
  public:
   Runner(const Experiment& experiment, std::filesystem::path folder)
@@ -48,7 +63,7 @@ class Runner {
 
   /// Adds everything that is wrong, before any work.
   void check(Faults& faults) {
-    if (!folder_.empty()) program::check_folder(faults, folder_);
+    if (!folder_.empty()) check_folder(faults);
     drives_.check(faults);
     for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
       const PairSpec& spec = experiment_.pairs[pair];
@@ -60,8 +75,10 @@ class Runner {
   }
 
   void run(std::size_t threads) {
-    program::make_folder(folder_ / "descriptors");
-    program::make_folder(folder_ / "runs");
+    for (const char* kept : {"descriptors", "runs"}) {
+      program::make_folder(folder_ / kept);
+      files::remove_abandoned(folder_ / kept);
+    }
     std::vector<Job> first = drives_.jobs();
     for (Job& job : leave_out_jobs()) first.push_back(std::move(job));
     do_jobs("preparing", first, threads);
@@ -75,7 +92,7 @@ class Runner {
     for (const RunSpec& run : experiment_.runs) {
       report.results.push_back(kept_result(file(run, "json")).value());
       if (!shown_as_matrix(run)) continue;
-      const std::string png = files::read_text(file(run, "png"));
+      const std::string png = kept_picture(run, report.results.back()).value();
       report.matrices.push_back({fmt::format("{}: {}", report.results.back().pair, run.method),
                                  report.results.back().descriptor,
                                  {png.begin(), png.end()}});
@@ -87,6 +104,34 @@ class Runner {
   }
 
  private:
+  /// Nothing that is read and nothing of anybody else's may be written over.
+  void check_folder(Faults& faults) const {
+    program::check_folder(faults, folder_);
+    std::vector<program::FileUse> uses;
+    const auto add = [&uses](const char* flag, program::Access access, const auto& path) {
+      uses.push_back({flag, access, path});
+    };
+    for (const auto& input : experiment_.inputs) add("experiment", program::Access::reads, input);
+    for (const DescriptorSpec& descriptor : experiment_.descriptors) {
+      Faults told_later;
+      program::collect(told_later, [&] {
+        for (const auto& file : program::model_files(descriptor.describer.model,
+                                                     descriptor.describer.model_flags_given)) {
+          add("experiment", program::Access::reads, file);
+        }
+      });
+    }
+    add("out", program::Access::fills, folder_);
+    for (const char* name : {"index.html", "results.csv"}) {
+      add("out", program::Access::writes, folder_ / name);
+    }
+    program::refuse_overwriting(faults, uses);
+    if (!may_be_filled(folder_)) {
+      faults.push_back({"out", folder_.string() + " holds something that no experiment has left",
+                        "choose a new folder, or an empty one"});
+    }
+  }
+
   void check_lengths(std::size_t pair, const PairLengths& lengths, Faults& faults) const {
     const PairSpec& spec = experiment_.pairs[pair];
     static_cast<void>(pair_truth(spec, lengths, faults));
@@ -174,9 +219,11 @@ class Runner {
     result.alone = alone_;
     result.made_by = program::condition_line();
     if (shown_as_matrix(run)) {
+      const auto bytes = std::as_bytes(std::span(matched.matrix_png));
       files::OutputFile out(file(run, "png"));
-      out.write(std::as_bytes(std::span(matched.matrix_png)));
+      out.write(bytes);
       out.commit();
+      result.matrix = fingerprint({matched.matrix_png.begin(), matched.matrix_png.end()});
     }
     keep_result(result, file(run, "json"));
   }
@@ -228,9 +275,22 @@ class Runner {
   }
 
   [[nodiscard]] bool is_done(const RunSpec& run) const {
-    if (!kept_result(file(run, "json"))) return false;
+    const std::optional<Result> result = kept_result(file(run, "json"));
+    if (!result) return false;
     // Which run is shown as a matrix depends on the others in the file.
-    return !shown_as_matrix(run) || std::filesystem::exists(file(run, "png"));
+    return !shown_as_matrix(run) || kept_picture(run, *result);
+  }
+
+  /// The matrix of a run, as it was when the run was matched; nothing where it is not there, or
+  /// somebody damaged it.
+  [[nodiscard]] std::optional<std::string> kept_picture(const RunSpec& run,
+                                                        const Result& result) const {
+    try {
+      std::string png = files::read_text(file(run, "png"));
+      if (fingerprint(png) == result.matrix) return png;
+    } catch (const SetupError&) {  // it is made anew
+    }
+    return std::nullopt;
   }
 
   /// The first run of each method, pair and descriptor whose matrix is whole, and that compares

@@ -91,7 +91,8 @@ void Section::set(const program::OptionTable& options,
                   const std::vector<program::WrittenOption>& written,
                   const std::vector<Setting>& chosen) const {
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const program::WrittenOption own{options.find(chosen[i].name), written[i].where, {}};
+    const program::WrittenOption own{
+        options.find(chosen[i].name), written[i].key, written[i].where, {}};
     for (Fault& fault : program::set_written(own, chosen[i].value)) {
       faults_.push_back(std::move(fault));
     }

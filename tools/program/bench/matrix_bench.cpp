@@ -13,7 +13,7 @@
 namespace seqloop::program {
 namespace {
 
-constexpr std::size_t frames_at_once = 64;
+constexpr std::size_t frames_at_once = MatcherConfig::most_frames_at_once;
 
 MatcherConfig config_of(std::size_t ds) {
   MatcherConfig config;

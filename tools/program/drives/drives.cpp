@@ -43,6 +43,13 @@ void set_training(std::vector<std::filesystem::path>& drives, std::string_view t
   }
 }
 
+std::vector<FileUse> all_read(const std::string& flag,
+                              const std::vector<std::filesystem::path>& paths) {
+  std::vector<FileUse> uses;
+  for (const std::filesystem::path& path : paths) uses.push_back({flag, Access::reads, path});
+  return uses;
+}
+
 /// No more than can be learned from as many pictures and features as are taken.
 std::size_t parse_count_to(std::string_view text, std::size_t most) {
   const std::size_t count = parse_count(text);
@@ -57,8 +64,15 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.text("descriptor", settings.descriptor,
                "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
-  options.path("model", settings.model.model,
-               "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]");
+  options.add({"model", ValueKind::text,
+               "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]",
+               [&settings](std::string_view value) { settings.model.model = value; },
+               [&settings] {
+                 return all_read("model",
+                                 settings.model.model.empty()
+                                     ? std::vector<std::filesystem::path>()
+                                     : model_files(settings.model, settings.model_flags_given));
+               }});
   const OptionTable model = model_options(settings.model);
   for (Option option : model.options()) {
     option.set = [&settings, name = option.name, set = option.set](std::string_view value) {
@@ -69,7 +83,8 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   }
   options.add({"training", ValueKind::text,
                "drives to learn from, image folders or videos, with commas between",
-               [&settings](std::string_view value) { set_training(settings.training, value); }});
+               [&settings](std::string_view value) { set_training(settings.training, value); },
+               [&settings] { return all_read("training", settings.training); }});
   options.add(
       {"words", ValueKind::count, "words: size of the vocabulary [500]",
        [&settings](std::string_view value) { settings.words = parse_count_to(value, 20'000); }});
@@ -111,6 +126,16 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
   for (const std::string& note : source.notes()) {
     say("{}: {}", path.string(), note);
+  }
+}
+
+void tell_blank(const std::filesystem::path& path, std::uint64_t blank, std::uint64_t frames) {
+  if (blank == 0) return;
+  if (blank < frames) {
+    say("{}: {} of {} frames are blank, without any feature", path.string(), blank, frames);
+  } else {
+    say("{}: all frames are blank, without any feature: there is nothing to recognise a place by",
+        path.string());
   }
 }
 

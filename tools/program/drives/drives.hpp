@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -65,5 +66,8 @@ void check_describer(const DriveSettings& settings, bool training_given);
 
 /// Tells the user, on stderr, what the source has to say of itself.
 void tell_notes(const std::filesystem::path& path, const FrameSource& source);
+
+/// Tells the user, on stderr, when frames are blank, and that a drive of nothing else has no match.
+void tell_blank(const std::filesystem::path& path, std::uint64_t blank, std::uint64_t frames);
 
 }  // namespace seqloop::program

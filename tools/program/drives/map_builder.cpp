@@ -19,13 +19,14 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
-void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
-              Progress& progress) {
+std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
+                     const MatcherConfig& config, Progress& progress) {
   std::vector<float> buffer(map.descriptor_size());
   std::deque<std::vector<float>> described{std::vector<float>(map.descriptor_size(), 0.0F)};
   std::vector<std::span<const float>> places;
   std::span<const float> last = described.front();
   std::size_t readable = 0;
+  std::size_t blank_frames = 0;
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
     stop_if_interrupted();
@@ -34,7 +35,9 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const Mat
       progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     } else {
       ++readable;
-      const bool left_out = config.blank_is_unreadable && blank(config.difference, descriptor);
+      const bool is_blank = blank(config.difference, descriptor);
+      if (is_blank) ++blank_frames;
+      const bool left_out = config.blank_is_unreadable && is_blank;
       const bool stays = descriptor.data() == frame.descriptor.data();
       if (!left_out && stays) last = descriptor;
       if (!left_out && !stays) last = described.emplace_back(descriptor.begin(), descriptor.end());
@@ -54,6 +57,7 @@ void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const Mat
     for (const std::span<const float> place : places) static_cast<void>(map.learn(place));
   }
   for (const std::span<const float> place : places) static_cast<void>(map.add(place));
+  return blank_frames;
 }
 
 }  // namespace seqloop::program

@@ -14,8 +14,9 @@ namespace seqloop::program {
 /// Makes a map of a whole drive. A frame that cannot be read is told of, and its place shows what
 /// the frame before it showed, so that places stay in step with frames. Where places are
 /// standardised, descriptors are held as float until all have been seen.
+/// @return frames that are blank, without any feature
 /// Throws SetupError when the map has too little room or no frame can be read.
-void fill_map(PlaceMap& map, FrameSource& drive, Describer* describer, const MatcherConfig& config,
-              Progress& progress);
+std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
+                     const MatcherConfig& config, Progress& progress);
 
 }  // namespace seqloop::program

@@ -51,7 +51,7 @@ std::filesystem::path settings_beside(const std::filesystem::path& model) {
 
 OptionTable model_options(opencv::ModelSettings& model) {
   OptionTable options;
-  options.path("config-model", model.config_model,
+  options.path("config-model", Access::reads, model.config_model,
                "second model file where the format has one, such as Caffe's prototxt");
   options.text("layer", model.layer, "layer by its name in the model file [the last one]");
   options.add({"input-size", ValueKind::size, "WxH in pixels [as the model says]",

@@ -106,14 +106,43 @@ void OptionTable::text(std::string name, std::string& target, std::string help) 
        [&target](std::string_view value) { target = value; }});
 }
 
-void OptionTable::path(std::string name, std::filesystem::path& target, std::string help) {
-  add({std::move(name), ValueKind::text, std::move(help),
-       [&target](std::string_view value) { target = value; }});
+void OptionTable::path(std::string name, Access access, std::filesystem::path& target,
+                       std::string help) {
+  add({name, ValueKind::text, std::move(help),
+       [&target](std::string_view value) { target = value; },
+       [&target, name, access] {
+         return std::vector<FileUse>{{name, access, target}};
+       }});
 }
 
 void OptionTable::on_off(std::string name, bool& target, std::string help) {
   add({std::move(name), ValueKind::on_off, std::move(help),
        [&target](std::string_view value) { target = parse_on_off(value); }});
+}
+
+void OptionTable::folder(std::string name, std::filesystem::path& target,
+                         std::vector<std::string> files, std::string help) {
+  const auto uses = [&target, name, files = std::move(files)] {
+    std::vector<FileUse> all;
+    if (target.empty()) return all;
+    all.push_back({name, Access::fills, target});
+    for (const std::string& file : files) all.push_back({name, Access::writes, target / file});
+    return all;
+  };
+  add({name, ValueKind::text, std::move(help),
+       [&target](std::string_view value) { target = value; }, uses});
+}
+
+std::vector<FileUse> OptionTable::files() const {
+  std::vector<FileUse> all;
+  for (const Option& option : options_) {
+    if (!option.files) continue;
+    try {
+      for (FileUse& use : option.files()) all.push_back(std::move(use));
+    } catch (const SetupError&) {  // whoever opens these files says what is wrong with them
+    }
+  }
+  return all;
 }
 
 const Option* OptionTable::find(std::string_view name) const noexcept {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/process/outputs.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -30,6 +31,8 @@ struct Option {
   std::string help;
   /// Takes the value as written on the command line. Throws std::invalid_argument: why not.
   std::function<void(std::string_view)> set;
+  /// What is read and written by it, once everything is set. May throw SetupError.
+  std::function<std::vector<FileUse>()> files = {};
 };
 
 /// The settings of one subcommand. Every value is taken as text and converted here, so that all
@@ -41,12 +44,19 @@ class OptionTable {
   void number(std::string name, double& target, std::string help);
   void number(std::string name, float& target, std::string help);
   void text(std::string name, std::string& target, std::string help);
-  void path(std::string name, std::filesystem::path& target, std::string help);
+  /// A path says what becomes of what it names.
+  void path(std::string name, Access access, std::filesystem::path& target, std::string help);
+  /// A folder to fill. @param files that are known beforehand to come there
+  void folder(std::string name, std::filesystem::path& target, std::vector<std::string> files,
+              std::string help);
   void on_off(std::string name, bool& target, std::string help);
   void add(Option option) { options_.push_back(std::move(option)); }
 
   [[nodiscard]] const std::vector<Option>& options() const noexcept { return options_; }
   [[nodiscard]] const Option* find(std::string_view name) const noexcept;
+
+  /// All that is read and written by what the options are set to, as far as that can be told.
+  [[nodiscard]] std::vector<FileUse> files() const;
 
   /// Takes one value. @return why not, with the name; nothing when it fits
   [[nodiscard]] static Faults set(const Option& option, std::string_view value);

@@ -95,17 +95,19 @@ class Reader {
          Faults& faults)
       : file_(file), options_(options), others_(others), faults_(faults) {}
 
-  void read(const toml::table& table, const std::string& prefix) {
+  /// @param prefix of the options' names; @param tables the same as the file spells it
+  void read(const toml::table& table, const std::string& prefix, const std::string& tables) {
     std::vector<std::pair<const toml::node*, std::string>> in_order;
-    for (const auto& [key, node] : table) in_order.emplace_back(&node, prefix + std::string(key));
+    for (const auto& [key, node] : table) in_order.emplace_back(&node, key);
     std::ranges::sort(in_order,
                       [](const auto& a, const auto& b) { return earlier(a.first, b.first); });
-    for (const auto& [node, name] : in_order) {
+    for (const auto& [node, key] : in_order) {
+      const std::string name = prefix + key;
       if (std::ranges::find(others_.ignored, name) != others_.ignored.end()) continue;
       if (const toml::table* inner = node->as_table()) {
-        read(*inner, name + "-");
+        read(*inner, name + "-", tables + key + ".");
       } else {
-        take(name, *node);
+        take(name, tables + key, *node);
       }
     }
   }
@@ -113,7 +115,7 @@ class Reader {
   std::vector<WrittenOption> written;
 
  private:
-  void take(const std::string& name, const toml::node& node) {
+  void take(const std::string& name, const std::string& key, const toml::node& node) {
     const Option* option = options_.find(name);
     if (option == nullptr) {
       std::vector<std::string> known = others_.ignored;
@@ -123,7 +125,15 @@ class Reader {
                          meant.empty() ? "" : "did you mean '" + meant + "'?"});
       return;
     }
-    WrittenOption found{option, where(file_, node), {}};
+    WrittenOption found{option, key, where(file_, node), {}};
+    const auto before = std::ranges::find(written, option, &WrittenOption::option);
+    if (before != written.end()) {
+      faults_.push_back({found.where,
+                         fmt::format("'{}' sets '{}', which '{}' has set already ({})", key, name,
+                                     before->key, before->where),
+                         "leave one of them out"});
+      return;
+    }
     const toml::array* list = node.as_array();
     if (others_.lists && list != nullptr && option->kind != ValueKind::triple) {
       for (const toml::node& element : *list) add(found, name, element);
@@ -179,7 +189,7 @@ std::vector<WrittenOption> read_options(const toml::table& table, const std::str
                                         const OptionTable& options, const OtherKeys& others,
                                         Faults& faults) {
   Reader reader(file, options, others, faults);
-  reader.read(table, "");
+  reader.read(table, "", "");
   return std::move(reader.written);
 }
 

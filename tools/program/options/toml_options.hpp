@@ -14,6 +14,7 @@ namespace seqloop::program {
 /// A key of a TOML table that names an option, with what the command line would say.
 struct WrittenOption {
   const Option* option;
+  std::string key;                  ///< as the table spells it: `budget-total` or `budget.total`
   std::string where;                ///< FILE:LINE
   std::vector<std::string> values;  ///< one, or as many as a list holds; never none
 };

@@ -48,15 +48,16 @@ evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) 
 }  // namespace
 
 void add_truth_options(OptionTable& options, TruthSettings& settings) {
-  options.path("truth", settings.file,
+  options.path("truth", Access::reads, settings.file,
                "identity, or a CSV file query,reference and, where a row has its own, tolerance "
                "[identity]");
   options.count("tolerance", settings.tolerance,
                 "frames by which a match may be off; not with positions [2]");
-  options.path("reference-positions", settings.reference_positions,
+  options.path("reference-positions", Access::reads, settings.reference_positions,
                "truth by where frames were: CSV frame,x,y (metres) or "
                "frame,latitude,longitude (degrees)");
-  options.path("query-positions", settings.query_positions, "likewise, of the queries");
+  options.path("query-positions", Access::reads, settings.query_positions,
+               "likewise, of the queries");
   options.add({"radius", ValueKind::number, "metres by which a match may be off [25]",
                [&settings](std::string_view value) { settings.radius_m = parse_number(value); }});
 }

@@ -1,24 +1,98 @@
 // SPDX-License-Identifier: MIT
 #include "program/process/outputs.hpp"
 
+#include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace seqloop::program {
+namespace {
 
-void refuse_overwriting(Faults& faults, const std::filesystem::path& out,
-                        const std::vector<std::filesystem::path>& inputs) {
+namespace fs = std::filesystem;
+
+/// What a name stands for.
+struct Target {
+  explicit Target(const fs::path& path) {
+    std::error_code error;
+    const bool standard_output = path == "-" || path == "/dev/stdout";
+    name = standard_output ? "/dev/stdout" : fs::weakly_canonical(fs::absolute(path, error), error);
+    if (!name.has_filename()) name = name.parent_path();
+    struct stat found {};
+    const bool there =
+        standard_output ? ::fstat(STDOUT_FILENO, &found) == 0 : ::stat(path.c_str(), &found) == 0;
+    if (there) status = found;
+  }
+
+  /// Devices hold nothing that could be lost: they are the same where their names are.
+  [[nodiscard]] bool known_by_number() const { return status && !S_ISCHR(status->st_mode); }
+  [[nodiscard]] bool is_folder() const { return status && S_ISDIR(status->st_mode); }
+
+  fs::path name;                      ///< without links, as far as it is there
+  std::optional<struct stat> status;  ///< none: nothing is there yet
+};
+
+bool same(const Target& one, const Target& other) {
+  if (one.known_by_number() && other.known_by_number()) {
+    return one.status->st_dev == other.status->st_dev && one.status->st_ino == other.status->st_ino;
+  }
+  return one.name == other.name;
+}
+
+/// Whether a folder holds a file, by this name or another.
+bool lies_in(const Target& file, const fs::path& folder) {
+  if (!file.known_by_number() || file.is_folder()) return false;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(out, error)) return;
-  const std::filesystem::path folder = std::filesystem::absolute(out, error).parent_path();
-  const auto holds_out = [&](const std::filesystem::path& input) {
-    return !input.empty() && (std::filesystem::equivalent(input, out, error) ||
-                              std::filesystem::equivalent(input, folder, error));
-  };
-  if (std::ranges::any_of(inputs, holds_out)) {
-    faults.push_back(
-        {"out", "writing " + out.string() + " would destroy an input", "choose another name"});
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    struct stat found {};
+    if (::stat(entry->path().c_str(), &found) == 0 && found.st_dev == file.status->st_dev &&
+        found.st_ino == file.status->st_ino) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Why an output is in the way of something else; nothing where it is not.
+std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
+  const Target target(output.path);
+  const Target there(other.path);
+  if (other.access != Access::reads) {
+    const bool files = output.access == Access::writes && other.access == Access::writes;
+    if (!files || !same(target, there)) return std::nullopt;
+    return Fault{output.flag, "is the same file as --" + other.flag, "name another one"};
+  }
+  if (output.access == Access::fills) {
+    if (!there.is_folder() || !same(target, there)) return std::nullopt;
+    return Fault{output.flag,
+                 fmt::format("files would come among those of {}, which is read ({})",
+                             output.path.string(), other.flag),
+                 "choose another folder"};
+  }
+  if (!same(target, there) && !lies_in(target, other.path)) return std::nullopt;
+  return Fault{
+      output.flag,
+      fmt::format("writing {} would destroy an input ({})", output.path.string(), other.flag),
+      "choose another name"};
+}
+
+}  // namespace
+
+void refuse_overwriting(Faults& faults, const std::vector<FileUse>& uses) {
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (uses[i].access == Access::reads || uses[i].path.empty()) continue;
+    for (std::size_t k = 0; k < uses.size(); ++k) {
+      // Of two outputs the one that is named last is the one to change.
+      const bool told_of = uses[k].access != Access::reads && k >= i;
+      if (told_of || uses[k].path.empty()) continue;
+      if (std::optional<Fault> fault = clash(uses[i], uses[k])) {
+        faults.push_back(std::move(*fault));
+        break;
+      }
+    }
   }
 }
 

@@ -1,17 +1,33 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
 
-/// Adds a fault when an output is one of the inputs, or lies in an input folder and is there
-/// already.
-void refuse_overwriting(Faults& faults, const std::filesystem::path& out,
-                        const std::vector<std::filesystem::path>& inputs);
+/// What becomes of a file or a folder that a command was told of.
+enum class Access : std::uint8_t {
+  reads,   ///< a file, or a folder with all that is in it
+  writes,  ///< a file
+  fills    ///< a folder, with files of one's own
+};
+
+/// A name that a command was told, and what for. Empty names stand for nothing.
+struct FileUse {
+  std::string flag;  ///< which names it, without dashes
+  Access access;
+  std::filesystem::path path;
+};
+
+/// Adds a fault for every output that is an input, too, or another output: whatever the spelling,
+/// through links of both kinds. In a folder that is read nothing may be replaced, and it may not be
+/// filled.
+void refuse_overwriting(Faults& faults, const std::vector<FileUse>& uses);
 
 /// Adds a fault when a folder is not there and cannot be made.
 void check_folder(Faults& faults, const std::filesystem::path& folder);

@@ -28,15 +28,8 @@ std::size_t places_for(const RunSettings& settings, const FrameSource* drive) {
 }
 
 void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) {
-  std::vector<std::filesystem::path> inputs = settings.drive.training;
-  inputs.insert(inputs.end(), {settings.source, settings.reference});
-  refuse_overwriting(faults, settings.out, inputs);
   collect(faults, [&] { setup.out = std::make_unique<files::OutputFile>(settings.out); });
   if (!settings.summary.empty()) {
-    refuse_overwriting(faults, settings.summary, inputs);
-    if (settings.summary == settings.out) {
-      faults.push_back({"summary", "is the same file as --out", "name another one"});
-    }
     collect(faults, [&] { setup.summary = std::make_unique<files::OutputFile>(settings.summary); });
   }
   if (!settings.pictures.empty()) check_folder(faults, settings.pictures);

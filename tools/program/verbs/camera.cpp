@@ -31,13 +31,16 @@ struct CameraVerbSettings {
   CameraSettings camera;
 };
 
+/// What a camera says of itself is text from outside.
+void print(const std::string& lines) { fmt::print("{}", printable_lines(lines)); }
+
 void list(const CameraVerbSettings& settings) {
   if (!settings.device.empty()) {
-    fmt::print("{}", describe_camera(live::list_camera(live::system_calls(), settings.device)));
+    print(describe_camera(live::list_camera(live::system_calls(), settings.device)));
     return;
   }
   const std::vector<live::ListedCamera> cameras = live::list_cameras(live::system_calls());
-  for (const live::ListedCamera& camera : cameras) fmt::print("{}", describe_camera(camera));
+  for (const live::ListedCamera& camera : cameras) print(describe_camera(camera));
   if (!cameras.empty()) return;
   fmt::print(
       "no camera: there is no /dev/video*\n"
@@ -94,7 +97,7 @@ void measure(const CameraVerbSettings& settings, std::size_t frames) {
   live::Camera camera(options, live::system_calls(), clock);
   FrameTimes times;
   const bool came = capture(camera, clock, frames, times);
-  fmt::print("{}", times.report(options, camera.facts(), camera.counters()));
+  print(times.report(options, camera.facts(), camera.counters()));
   if (!came) throw std::runtime_error(options.path + ": no frame came for 10 s: given up");
 }
 

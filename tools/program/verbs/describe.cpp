@@ -7,7 +7,6 @@
 #include "program/drives/drives.hpp"
 #include "program/drives/live_camera.hpp"
 #include "program/process/interruption.hpp"
-#include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
@@ -39,9 +38,6 @@ void describe(const DescribeSettings& settings, Faults faults) {
   } else if (!camera) {
     collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
   }
-  std::vector<std::filesystem::path> inputs = settings.drive.training;
-  inputs.push_back(settings.source);
-  refuse_overwriting(faults, settings.out, inputs);
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out D.npy"});
   } else {
@@ -75,9 +71,9 @@ Verb describe_verb() {
       "describe", "Write the descriptors of every frame of a drive", {}, [settings](Faults faults) {
         describe(*settings, std::move(faults));
       }};
-  verb.options.path("source", settings->source,
+  verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0, until interrupted), image folder or video file");
-  verb.options.path("out", settings->out,
+  verb.options.path("out", Access::writes, settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
   add_camera_options(verb.options, settings->camera);

@@ -26,7 +26,7 @@ struct EvalSettings {
   bool json = false;
   std::filesystem::path experiment;
   std::filesystem::path out;
-  std::filesystem::path data;
+  std::string data;
   std::size_t jobs = 0;  ///< 0: as many as there are cores
 };
 
@@ -85,9 +85,9 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
 /// What belongs to match lists only, and what to experiments only.
 void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, Faults faults) {
   if (settings.experiment.empty()) {
-    for (const auto& [flag, path] : {std::pair{"out", &settings.out}, {"data", &settings.data}}) {
-      if (!path->empty())
-        faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
+    for (const auto& [flag, given] :
+         {std::pair{"out", !settings.out.empty()}, {"data", !settings.data.empty()}}) {
+      if (given) faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
     }
     eval_matches(settings, std::move(faults));
     return;
@@ -127,7 +127,8 @@ Verb eval_verb(ExperimentRunner run_experiment) {
             [settings, run_experiment = std::move(run_experiment)](Faults faults) {
               eval(*settings, run_experiment, std::move(faults));
             }};
-  verb.options.path("matches", settings->matches, "match list (CSV), as `match` writes it");
+  verb.options.path("matches", Access::reads, settings->matches,
+                    "match list (CSV), as `match` writes it");
   add_truth_options(verb.options, settings->truth);
   verb.options.add(
       {"threshold-on", ValueKind::text, "what the curve sweeps: uniqueness or score [uniqueness]",
@@ -136,10 +137,11 @@ Verb eval_verb(ExperimentRunner run_experiment) {
       "frames", settings->frames,
       "queries that have a truth [as the truth file says, or as far as the matches reach]");
   verb.options.flag("json", settings->json, "print JSON");
-  verb.options.path("experiment", settings->experiment,
+  verb.options.path("experiment", Access::reads, settings->experiment,
                     "methods x parameters x drives to run, TOML; goes on where it was interrupted");
-  verb.options.path("out", settings->out, "experiment: folder for the report, and what it keeps");
-  verb.options.path("data", settings->data,
+  verb.options.folder("out", settings->out, {"index.html", "results.csv"},
+                      "experiment: folder for the report, and what it keeps");
+  verb.options.text("data", settings->data,
                     "experiment: where its relative paths start [as the file says]");
   verb.options.count("jobs", settings->jobs, "experiment: runs at once [one a core]");
   return verb;

@@ -13,20 +13,17 @@
 #include "program/drives/map_builder.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/process/interruption.hpp"
-#include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/detector.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/files/output_file.hpp"
 
 namespace seqloop::program {
 namespace {
-
-// A recording is there whole, so that places can be read once for many frames.
-constexpr std::size_t frames_at_once = 64;
 
 struct MatchSettings {
   std::filesystem::path reference;
@@ -54,7 +51,8 @@ void match(const MatchSettings& settings, Faults faults) {
   const bool closing = settings.reference.empty();
   MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
-  config.frames_at_once = frames_at_once;
+  // A recording is there whole, so that places can be read once for many frames.
+  config.frames_at_once = MatcherConfig::most_frames_at_once;
   std::optional<files::Matrix> query;
   std::optional<files::Matrix> reference;
   if (settings.query.empty()) {
@@ -65,7 +63,6 @@ void match(const MatchSettings& settings, Faults faults) {
   if (!closing)
     collect(faults, [&] { reference = read_descriptors(settings.reference, config.difference); });
   std::unique_ptr<files::OutputFile> out;
-  refuse_overwriting(faults, settings.out, {settings.query, settings.reference});
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out M.csv"});
   } else {
@@ -87,19 +84,24 @@ void match(const MatchSettings& settings, Faults faults) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
     Progress mapping("mapping", drive.frame_count());
-    fill_map(map, drive, nullptr, config, mapping);
+    const std::size_t blank_places = fill_map(map, drive, nullptr, config, mapping);
+    tell_blank(settings.reference, blank_places, map.size());
   }
   Detector detector(config, map);
   out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
   Progress progress("matching", query->rows);
   std::size_t answered = 0;
+  std::size_t blank_frames = 0;
   std::vector<std::span<const float>> frames;
   std::vector<FrameReport> reports(config.frames_at_once);
   for (std::size_t row = 0; row < query->rows; row += frames.size()) {
     stop_if_interrupted();
     frames.clear();
     const std::size_t last = std::min(row + config.frames_at_once, query->rows);
-    for (std::size_t next = row; next < last; ++next) frames.push_back(query->row(next));
+    for (std::size_t next = row; next < last; ++next) {
+      frames.push_back(query->row(next));
+      if (blank(config.difference, frames.back())) ++blank_frames;
+    }
     detector.steps(frames, std::span(reports).first(frames.size()));
     for (const FrameReport& report : std::span(reports).first(frames.size())) {
       progress.step();
@@ -110,6 +112,7 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   progress.done();
   out->commit();
+  tell_blank(settings.query, blank_frames, query->rows);
   say("{} of {} frames answered, in {}", answered, query->rows, settings.out.string());
 }
 
@@ -121,10 +124,10 @@ Verb match_verb() {
             "Match the descriptors of one drive with those of another, or with its own",
             {},
             [settings](Faults faults) { match(*settings, std::move(faults)); }};
-  verb.options.path("reference", settings->reference,
+  verb.options.path("reference", Access::reads, settings->reference,
                     "descriptors of the map, .npy [close loops within the query]");
-  verb.options.path("query", settings->query, "descriptors of the drive, .npy");
-  verb.options.path("out", settings->out, "match list, CSV");
+  verb.options.path("query", Access::reads, settings->query, "descriptors of the drive, .npy");
+  verb.options.path("out", Access::writes, settings->out, "match list, CSV");
   add_matcher_options(verb.options, settings->matcher);
   return verb;
 }

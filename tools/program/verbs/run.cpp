@@ -23,6 +23,7 @@
 #include "program/run/source_numbers.hpp"
 #include "program/run/trouble_log.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
 #include "seqloop/pipeline.hpp"
@@ -65,8 +66,10 @@ void run(const RunSettings& settings, Faults faults) {
   PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
-    fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
+    const std::size_t blank_places =
+        fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
     tell_notes(settings.reference, *setup.reference);
+    tell_blank(settings.reference, blank_places, map.size());
   }
   Detector detector(setup.config, map);
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
@@ -84,6 +87,7 @@ void run(const RunSettings& settings, Faults faults) {
 
   const bool closing = settings.reference.empty();
   SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
   std::exception_ptr unwritten;
@@ -97,6 +101,8 @@ void run(const RunSettings& settings, Faults faults) {
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
+    const std::span<const float> seen = processed->descriptor;
+    if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     try {
       setup.out->write(frame_json(*processed, state));
       setup.out->flush();
@@ -124,6 +130,7 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
+  tell_blank(settings.source, blank_frames, summary.frames());
   const bool none_readable =
       summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
   if (none_readable && setup.recording) {
@@ -170,15 +177,16 @@ Verb run_verb() {
       "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
         run(*settings, std::move(faults));
       }};
-  verb.options.path("source", settings->source,
+  verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0), image folder, video file or descriptors (.npy)");
-  verb.options.path("reference", settings->reference,
+  verb.options.path("reference", Access::reads, settings->reference,
                     "drive to localise in [close loops within the source]");
-  verb.options.path("out", settings->out, "one JSON object a frame [standard output]");
-  verb.options.path("summary", settings->summary,
+  verb.options.path("out", Access::writes, settings->out,
+                    "one JSON object a frame [standard output]");
+  verb.options.path("summary", Access::writes, settings->summary,
                     "counts and latency histograms of the run, as JSON [none]");
-  verb.options.path("pictures", settings->pictures,
-                    "folder for the difference matrix and a sheet of matched pairs");
+  verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
+                      "folder for the difference matrix and a sheet of matched pairs");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "
                     "as it goes [max]",

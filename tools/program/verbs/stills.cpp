@@ -157,8 +157,8 @@ Verb stills_verb() {
             "Take stills of a drive at even times, resized and cropped",
             {},
             [settings](Faults faults) { take_stills(*settings, std::move(faults)); }};
-  verb.options.path("source", settings->source, "image folder or video file");
-  verb.options.path("out", settings->out, "folder to make: 000000.png ... and stills.csv");
+  verb.options.path("source", Access::reads, settings->source, "image folder or video file");
+  verb.options.folder("out", settings->out, {}, "folder to make: 000000.png ... and stills.csv");
   verb.options.add(
       {"format", ValueKind::text, "png or jpg [png]", [settings](std::string_view value) {
          if (value != "png" && value != "jpg") {

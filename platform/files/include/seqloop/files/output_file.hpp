@@ -20,7 +20,8 @@ class IoError : public std::runtime_error {
 /// A file that appears under its name only when it is complete.
 ///
 /// Until `commit` everything goes to `.NAME.partial-PID` in the same folder; the destructor removes
-/// that file if there was no commit, and a process that is killed leaves nothing else behind. A
+/// that file if there was no commit. A process that is killed leaves it behind, and whoever writes
+/// the same output next removes it: a lock tells what is left over from what somebody writes. A
 /// name that exists and is no regular file (/dev/null, a pipe), and any name in /dev, /proc or
 /// /sys, is written directly; `-` and /dev/stdout are the standard output. A symbolic link is
 /// followed, so that the file it points to is replaced and not the link.
@@ -77,5 +78,9 @@ class OutputFile {
   int descriptor_ = -1;
   bool (*give_up_)() noexcept = nullptr;
 };
+
+/// Removes from a folder what killed processes left of any output file, as far as no process holds
+/// it. For folders in which nobody else has files of such names.
+void remove_abandoned(const std::filesystem::path& folder);
 
 }  // namespace seqloop::files

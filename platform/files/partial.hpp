@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace seqloop::files {
+
+enum class PartialKind : std::uint8_t { file, folder };
+
+/// What an output is until it is complete: `.NAME.partial-PID` beside the place where it will be. A
+/// lock on it, which ends with the process, tells others that somebody is still at work.
+struct Partial {
+  std::filesystem::path path;
+  int descriptor = -1;  ///< the file, for writing, or the folder; locked. The caller closes it.
+};
+
+/// Makes one, after removing those of the same output that killed processes left.
+/// @return no descriptor where it cannot be made; `errno` says why
+[[nodiscard]] Partial make_partial(const std::filesystem::path& output, PartialKind kind);
+
+}  // namespace seqloop::files

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace seqloop::program {
+
+/// A character that was read.
+struct Character {
+  std::size_t bytes = 0;  ///< 0: the text does not begin with UTF-8
+  char32_t code = 0;
+};
+
+/// The first character of a text. Over-long forms and surrogates are none.
+[[nodiscard]] Character first_character(std::string_view text) noexcept;
+
+}  // namespace seqloop::program
