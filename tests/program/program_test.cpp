@@ -342,6 +342,18 @@ TEST_F(Run, EvalMeasuresByTheBook) {
   EXPECT_NEAR(by_file["recall"], 2.0 / 3.0, 1e-12);
 }
 
+TEST_F(Run, MatchHasTheSameDefaultMethodAsRun) {
+  write_npy("drive.npy", oracle::drive(3, 80, 12));
+  const std::string match = "match --reference drive.npy --query drive.npy --k 3 --num 4 --out ";
+  expect_done(match + "default.csv");
+  expect_done(match + "o.csv --method o-seqcnnslam");
+  expect_done(match + "all.csv --method seqcnnslam");
+  EXPECT_EQ(test::read_all(file("default.csv")), test::read_all(file("o.csv")));
+  EXPECT_NE(test::read_all(file("default.csv")), test::read_all(file("all.csv")));
+  expect_done("run --source drive.npy --reference drive.npy --out r.jsonl --summary s.json");
+  EXPECT_EQ(nlohmann::json::parse(test::read_all(file("s.json")))["method"], "o-seqcnnslam");
+}
+
 TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   const auto paper = expect_done("plan --paper --max-places 1000 --descriptor-size 64 --ds 10");
   EXPECT_NE(paper.out.find("256000  map: places"), std::string::npos) << paper.out;
@@ -353,6 +365,9 @@ TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   EXPECT_NE(plan.out.find("266  descriptor distances"), std::string::npos) << plan.out;
   EXPECT_NE(plan.out.find("255  line sums"), std::string::npos) << "51 rows, 5 velocities";
   EXPECT_NE(plan.out.find("3  frames until the whole map"), std::string::npos) << plan.out;
+  for (const auto& printed : {paper, plan}) {
+    EXPECT_EQ(printed.out.find("\n               0  "), std::string::npos) << "empty buffers";
+  }
 }
 
 TEST_F(Run, VersionAndHelpEverywhere) {

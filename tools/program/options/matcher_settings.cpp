@@ -67,7 +67,8 @@ FullMap parse_full_map(std::string_view text) {
 void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   MatcherConfig& config = settings.config;
   options.text("method", settings.method,
-               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence");
+               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence "
+               "[o-seqcnnslam]");
   options.flag("paper", settings.paper, "follow the paper to the letter");
   options.add(
       {"ds", ValueKind::count, "sequence length, frames [20]", [&settings](std::string_view value) {

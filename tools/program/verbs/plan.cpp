@@ -19,7 +19,7 @@ struct PlanSettings {
 
 void print_buffers(const char* owner, const std::vector<BufferSize>& buffers) {
   for (const BufferSize& buffer : buffers) {
-    fmt::print("{:>16}  {}: {}\n", buffer.bytes, owner, buffer.name);
+    if (buffer.bytes > 0) fmt::print("{:>16}  {}: {}\n", buffer.bytes, owner, buffer.name);
   }
 }
 
@@ -58,7 +58,6 @@ void plan(const PlanSettings& settings, Faults faults) {
 
 Verb plan_verb() {
   const auto settings = std::make_shared<PlanSettings>();
-  settings->matcher.method = "o-seqcnnslam";
   Verb verb{"plan",
             "Print the memory and the work that a configuration takes, without starting it",
             {},

@@ -164,7 +164,6 @@ Pace parse_pace(std::string_view text) {
 
 Verb run_verb() {
   const auto settings = std::make_shared<RunSettings>();
-  settings->matcher.method = "o-seqcnnslam";
   Verb verb{
       "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
         run(*settings, std::move(faults));
