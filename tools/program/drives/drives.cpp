@@ -10,6 +10,7 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/source.hpp"
+#include "seqloop/turbojpeg/jpeg_file_decoder.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -104,7 +105,8 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     return std::make_unique<files::DescriptorSource>(read_descriptors(path, settings.difference),
                                                      settings.fps);
   }
-  return opencv::open_source(path, {.frames_per_second = settings.fps});
+  return opencv::open_source(path, {.frames_per_second = settings.fps,
+                                    .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false)});
 }
 
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
