@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -53,6 +54,20 @@ void become_real_time(const RealTimeSettings& settings) {
   live::touch_stack();
 }
 
+/// Makes what is as large as the map; where that cannot be, says who wants it so large.
+template <class Make>
+auto with_room(const RunSetup& setup, Make make) {
+  Faults faults{setup.why_places};
+  try {
+    return make();
+  } catch (const SetupError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+  } catch (const std::bad_alloc&) {
+    faults.push_back({"memory", "there is not enough"});
+  }
+  throw SetupError(std::move(faults));
+}
+
 void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
@@ -61,13 +76,15 @@ void run(const RunSettings& settings, Faults faults) {
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
   // Start-up: the map, then every path once, before the first frame counts.
-  PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
+  PlaceMap map = with_room(setup, [&] {
+    return PlaceMap(setup.config, {setup.places, setup.descriptor_size});
+  });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
     tell_notes(settings.reference, *setup.reference);
   }
-  Detector detector(setup.config, map);
+  Detector detector = with_room(setup, [&] { return Detector(setup.config, map); });
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
   PictureRecorder recorder(setup.config.difference);
@@ -82,7 +99,9 @@ void run(const RunSettings& settings, Faults faults) {
   const live::ThreadCounters warm = live::thread_counters();
 
   const bool closing = settings.reference.empty();
-  SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  SourceNumbers numbers = with_room(setup, [&] {
+    return SourceNumbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  });
   bool map_full = false;
   bool given_up = false;
   std::exception_ptr unwritten;
