@@ -342,6 +342,29 @@ TEST_F(Run, EvalMeasuresByTheBook) {
   EXPECT_NEAR(by_file["recall"], 2.0 / 3.0, 1e-12);
 }
 
+TEST_F(Run, EvalTakesTheLinesOfARunAndSaysWhatRecallIsOver) {
+  write_npy("map.npy", oracle::drive(3, 80, 12));
+  write_npy("drive.npy", oracle::drive(4, 60, 12));
+  const std::string drives = " map.npy --ds 10 --out ";
+  expect_done("match --query drive.npy --reference" + drives + "m.csv");
+  expect_done("run --source drive.npy --reference" + drives + "r.jsonl");
+  const std::string frames = " --frames 60 --json --matches ";
+  const auto by_match = expect_done("eval" + frames + "m.csv");
+  const auto by_run = expect_done("eval" + frames + "r.jsonl");
+  EXPECT_EQ(by_run.out, by_match.out);
+  EXPECT_EQ(nlohmann::json::parse(by_run.out)["answered"], 50);
+  EXPECT_EQ(by_run.err, "");
+  EXPECT_EQ(expect_done("eval --threshold-on score" + frames + "r.jsonl").out,
+            expect_done("eval --threshold-on score" + frames + "m.csv").out);
+  const auto as_far = expect_done("eval --json --matches r.jsonl");
+  EXPECT_EQ(nlohmann::json::parse(as_far.out)["frames"], 55);
+  EXPECT_NE(as_far.err.find("recall is over the first 55 frames only"), std::string::npos)
+      << as_far.err;
+  EXPECT_NE(as_far.err.find("--frames"), std::string::npos);
+  folder_.write("t.csv", "query,reference\n20,20\n");
+  EXPECT_EQ(expect_done("eval --truth t.csv --json --matches r.jsonl").err, "");
+}
+
 TEST_F(Run, MatchHasTheSameDefaultMethodAsRun) {
   write_npy("drive.npy", oracle::drive(3, 80, 12));
   const std::string match = "match --reference drive.npy --query drive.npy --k 3 --num 4 --out ";
