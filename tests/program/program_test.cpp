@@ -1,6 +1,7 @@
 // The main job through the real binary, on a drive of synthetic pictures and on synthetic
 // descriptors.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -399,6 +400,54 @@ TEST_F(Run, VersionAndHelpEverywhere) {
     EXPECT_NE(expect_done(verb + " --version").out.find("seqloop "), std::string::npos);
     EXPECT_NE(expect_done(verb + " --help").out.find("--config"), std::string::npos);
   }
+}
+
+/// Flags of a help text, each under its heading.
+std::map<std::string, std::string> flags_of(const std::string& help) {
+  std::map<std::string, std::string> headings;
+  std::istringstream text(help);
+  std::string heading;
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_LE(line.size(), 100U) << line;
+    if (line.ends_with(':') && !line.starts_with(' ')) heading = line.substr(0, line.size() - 1);
+    const std::size_t flag = line.find("--");
+    if (flag == 2 || line.starts_with("  -h,")) {
+      const std::string name = line.substr(flag, line.find_first_of(" ", flag) - flag);
+      EXPECT_TRUE(headings.emplace(name, heading).second) << name << " twice";
+    }
+  }
+  return headings;
+}
+
+TEST_F(Run, HelpIsGroupedAndHelpAllHasEveryFlag) {
+  const std::string help = expect_done("run --help").out;
+  const auto most_used = flags_of(help);
+  const auto all = flags_of(expect_done("run --help-all").out);
+  const std::map<std::string, std::string> wanted{{"--source", "Task"},
+                                                  {"--fps", "Source"},
+                                                  {"--model", "Model"},
+                                                  {"--ds", "Matching"},
+                                                  {"--max-uniqueness", "Decision"},
+                                                  {"--budget-total", "Budget"},
+                                                  {"--size", "Camera"},
+                                                  {"--realtime-cpus", "Real time"},
+                                                  {"--config", "General"}};
+  for (const auto& [flag, heading] : wanted) {
+    ASSERT_TRUE(most_used.contains(flag)) << flag;
+    EXPECT_EQ(most_used.at(flag), heading) << flag;
+  }
+  for (const auto& [flag, heading] : most_used) {
+    ASSERT_TRUE(all.contains(flag)) << flag;
+    EXPECT_EQ(all.at(flag), heading) << flag;
+  }
+  EXPECT_FALSE(most_used.contains("--initial-k"));
+  EXPECT_EQ(all.at("--initial-k"), "Matching");
+  EXPECT_LT(most_used.size(), 40U);
+  EXPECT_GT(all.size(), 57U);
+  EXPECT_NE(help.find(std::to_string(all.size() - most_used.size()) + " more flags: seqloop run"),
+            std::string::npos);
+  for (const std::string task : {"close loops", "localise", "time a recording", "as SeqSLAM"})
+    EXPECT_NE(help.find("\n  " + task), std::string::npos) << task;
 }
 
 }  // namespace

@@ -55,10 +55,12 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 }  // namespace
 
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
+  options.section("Model");
   options.text("descriptor", settings.descriptor,
                "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
   options.path("model", settings.model.model,
                "model file (ONNX, Caffe, TensorFlow, ...) [the built-in descriptor]");
+  options.section("Model", Shown::in_help_all);
   const OptionTable model = model_options(settings.model);
   for (Option option : model.options()) {
     option.set = [&settings, name = option.name, set = option.set](std::string_view value) {
@@ -78,6 +80,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                [&settings](std::string_view value) {
                  settings.remove_components = parse_count_to(value, 999);
                }});
+  options.section("Source");
   options.add({"fps", ValueKind::number,
                "frames a second: of an image folder; of a camera, at least [10]",
                [&settings](std::string_view value) {

@@ -115,6 +115,17 @@ void OptionTable::on_off(std::string name, bool& target, std::string help) {
        [&target](std::string_view value) { target = parse_on_off(value); }});
 }
 
+void OptionTable::add(Option option) {
+  option.section = section_;
+  option.shown = shown_;
+  options_.push_back(std::move(option));
+}
+
+void OptionTable::section(std::string heading, Shown shown) {
+  section_ = std::move(heading);
+  shown_ = shown;
+}
+
 const Option* OptionTable::find(std::string_view name) const noexcept {
   const auto found = std::ranges::find(options_, name, &Option::name);
   return found == options_.end() ? nullptr : &*found;

@@ -22,6 +22,12 @@ enum class ValueKind {
   triple   ///< three numbers B,G,R; in TOML an array too
 };
 
+/// When a flag is shown.
+enum class Shown {
+  in_help,     ///< by --help
+  in_help_all  ///< by --help-all only: few need it
+};
+
 /// One setting: a long flag, and a TOML key of the same name.
 struct Option {
   std::string name;  ///< without dashes in front
@@ -29,6 +35,8 @@ struct Option {
   std::string help;
   /// Takes the value as written on the command line. Throws std::invalid_argument: why not.
   std::function<void(std::string_view)> set;
+  std::string section = "Options";  ///< heading of the help
+  Shown shown = Shown::in_help;
 };
 
 /// The settings of one subcommand. Every value is taken as text and converted here, so that all
@@ -42,7 +50,10 @@ class OptionTable {
   void text(std::string name, std::string& target, std::string help);
   void path(std::string name, std::filesystem::path& target, std::string help);
   void on_off(std::string name, bool& target, std::string help);
-  void add(Option option) { options_.push_back(std::move(option)); }
+  void add(Option option);
+
+  /// Says what all settings that are added from here on belong to.
+  void section(std::string heading, Shown shown = Shown::in_help);
 
   [[nodiscard]] const std::vector<Option>& options() const noexcept { return options_; }
   [[nodiscard]] const Option* find(std::string_view name) const noexcept;
@@ -52,6 +63,8 @@ class OptionTable {
 
  private:
   std::vector<Option> options_;
+  std::string section_ = "Options";
+  Shown shown_ = Shown::in_help;
 };
 
 /// @return the name that is written most like this one, when one is near enough to be meant

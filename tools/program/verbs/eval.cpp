@@ -130,6 +130,7 @@ Verb eval_verb(ExperimentRunner run_experiment) {
             [settings, run_experiment = std::move(run_experiment)](Faults faults) {
               eval(*settings, run_experiment, std::move(faults));
             }};
+  verb.options.section("Answers");
   verb.options.path("matches", settings->matches,
                     "answers: the match list (CSV) of `match`, or the JSON lines of `run`");
   add_truth_options(verb.options, settings->truth);
@@ -140,6 +141,7 @@ Verb eval_verb(ExperimentRunner run_experiment) {
       "frames", settings->frames,
       "queries that have a truth [as the truth file says, or as far as the matches reach]");
   verb.options.flag("json", settings->json, "print JSON");
+  verb.options.section("Experiment");
   verb.options.path("experiment", settings->experiment,
                     "methods x parameters x drives to run, TOML; goes on where it was interrupted");
   verb.options.path("out", settings->out, "experiment: folder for the report, and what it keeps");

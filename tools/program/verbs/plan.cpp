@@ -62,6 +62,7 @@ Verb plan_verb() {
             "Print the memory and the work that a configuration takes, without starting it",
             {},
             [settings](Faults faults) { plan(*settings, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.count("max-places", settings->places, "places of the map [3476]");
   verb.options.count("descriptor-size", settings->descriptor_size,
                      "values in a descriptor [735, the built-in one]");

@@ -179,14 +179,31 @@ Pace parse_pace(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is neither live nor max");
 }
 
+constexpr std::string_view tasks =
+    R"(Tasks, and what is taken by default:
+  close loops       --source DRIVE                  room for as many places as DRIVE has frames; the
+                                                    newest 100 frames are no places (--exclude)
+  localise          --source DRIVE --reference MAP  a place for each frame of MAP
+  run on a camera   --source /dev/video0            room for 20000 places; the cheapest mode of 10
+                                                    frames a second or more; late frames dropped
+  time a recording  --source DRIVE --pace live      10 frames a second of a folder; late frames
+                                                    dropped; histograms with --summary FILE
+  follow the paper  --paper                         --standardise off --relocalise off
+                                                    --arithmetic float
+  as SeqSLAM does   --method seqslam                --descriptor patches --enhance on
+                                                    --difference mean-absolute --standardise off
+                                                    --arithmetic float)";
+
 }  // namespace
 
 Verb run_verb() {
   const auto settings = std::make_shared<RunSettings>();
-  Verb verb{
-      "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
-        run(*settings, std::move(faults));
-      }};
+  Verb verb{"run",
+            "Grab, describe, match and decide, frame by frame",
+            {},
+            [settings](Faults faults) { run(*settings, std::move(faults)); },
+            std::string(tasks)};
+  verb.options.section("Task");
   verb.options.path("source", settings->source,
                     "camera (/dev/video0), image folder, video file or descriptors (.npy)");
   verb.options.path("reference", settings->reference,
@@ -195,21 +212,23 @@ Verb run_verb() {
   verb.options.path("summary", settings->summary,
                     "counts and latency histograms of the run, as JSON [none]");
   verb.options.path("pictures", settings->pictures,
-                    "folder for the difference matrix and a sheet of matched pairs");
+                    "folder for the difference matrix and a sheet of matched pairs [none]");
+  verb.options.section("Source");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "
                     "as it goes [max]",
                     [settings](std::string_view value) { settings->pace = parse_pace(value); }});
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
-  verb.options.count("max-places", settings->max_places,
-                     "room in the map [as long as the drive, 20000 where that is not known]");
-  verb.options.number("give-up-s", settings->give_up_s,
-                      "seconds without a frame after which a camera is given up [0: never]");
-  add_loop_options(verb.options, settings->loop);
-  add_real_time_options(verb.options, settings->real_time);
-  add_camera_options(verb.options, settings->camera);
   add_drive_options(verb.options, settings->drive);
   add_matcher_options(verb.options, settings->matcher);
+  verb.options.section("Matching");
+  verb.options.count("max-places", settings->max_places,
+                     "room in the map [as long as the drive, 20000 where that is not known]");
+  add_loop_options(verb.options, settings->loop);
+  add_camera_options(verb.options, settings->camera);
+  verb.options.number("give-up-s", settings->give_up_s,
+                      "seconds without a frame after which a camera is given up [0: never]");
+  add_real_time_options(verb.options, settings->real_time);
   return verb;
 }
 
