@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "files/partial.hpp"
 
 #include <fcntl.h>

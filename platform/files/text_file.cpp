@@ -7,8 +7,7 @@
 
 namespace seqloop::files {
 
-std::string read_text(const std::filesystem::path& path) {
-  constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20U;
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   const std::string shown = path.string();
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -20,7 +19,9 @@ std::string read_text(const std::filesystem::path& path) {
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error || bytes > most_bytes) {
-    throw SetupError(Fault{shown, error ? error.message() : "is larger than 64 MiB"});
+    throw SetupError(
+        Fault{shown, error ? error.message()
+                           : "is larger than " + std::to_string(most_bytes >> 20U) + " MiB"});
   }
   std::string text(static_cast<std::size_t>(bytes), '\0');
   std::ifstream stream(path, std::ios::binary);

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+#include <new>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "opencv/detail/natural_order.hpp"
+#include "opencv/detail/one_line.hpp"
 #include "opencv/detail/picture_file.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "seqloop/fault.hpp"
@@ -25,6 +27,7 @@ constexpr std::array<std::string_view, 9> extensions{".jpg", ".jpeg", ".png",  "
                                                      ".ppm", ".tif",  ".tiff", ".webp"};
 constexpr std::uintmax_t most_file_bytes = std::uintmax_t{1} << 30;
 constexpr std::size_t most_named = 3;  // files that a note names before it says "..."
+constexpr std::string_view unreadable = "the file is no readable picture";
 
 struct Listing {
   std::vector<std::string> pictures;
@@ -63,8 +66,22 @@ Listing list_folder(const fs::path& folder) {
   return listing;
 }
 
-std::string size_text(const cv::Size& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
+std::string size_text(std::uint64_t width, std::uint64_t height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+/// Turns a picture as EXIF's orientation says. @param orientation 2 to 8
+void turn(const cv::Mat& picture, int orientation, cv::Mat& turned) {
+  constexpr int top_bottom = 0;
+  constexpr int left_right = 1;
+  constexpr int both = -1;
+  const bool sideways = orientation >= 5;
+  if (sideways) cv::transpose(picture, turned);
+  if (orientation == 5) return;
+  const bool half_turn = orientation == 3 || orientation == 7;
+  const bool mirrored = orientation == 2 || orientation == 6;
+  cv::flip(sideways ? turned : picture, turned,
+           half_turn ? both : (mirrored ? left_right : top_bottom));
 }
 
 }  // namespace
@@ -79,11 +96,12 @@ bool has_image_extension(const std::filesystem::path& path) {
 
 class ImageFolderSource::Impl {
  public:
-  Impl(fs::path folder, bool gray, double frames_per_second)
+  Impl(fs::path folder, bool gray, double frames_per_second, std::unique_ptr<PictureDecoder> jpeg)
       : folder_(std::move(folder)),
         listing_(list_folder(folder_)),
         flags_(gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR),
-        frames_per_second_(frames_per_second) {
+        frames_per_second_(frames_per_second),
+        jpeg_(std::move(jpeg)) {
     if (!std::isfinite(frames_per_second_) || frames_per_second_ <= 0.0)
       throw SetupError(Fault{"frame rate", "is not a positive number"});
   }
@@ -95,14 +113,14 @@ class ImageFolderSource::Impl {
     if (next_ == listing_.pictures.size()) return Grab::end;
     const std::string& name = listing_.pictures[next_++];
     try {
-      fault_.clear();
-      std::string_view reason = read_picture(folder_ / name);
+      Image image;
+      const std::string reason = read_picture(folder_ / name, image);
       if (reason.empty()) {
-        count_size(name);
-        frame.image = view(picture_);
+        count_size(name, image);
+        frame.image = image;
         return Grab::frame;
       }
-      fault_.append(name).append(": ").append(reason);
+      fault_ = name + ": " + reason;
       frame.fault = fault_;
     } catch (...) {
       frame.fault = "out of memory";
@@ -123,14 +141,15 @@ class ImageFolderSource::Impl {
     }
     if (odd_sizes_ > 0)
       lines.push_back(std::to_string(odd_sizes_) + " of " + std::to_string(next_) +
-                      " pictures differ in size from the first (" + size_text(first_size_) +
+                      " pictures differ in size from the first (" + first_size_ +
                       "): " + odd_example_ + (odd_sizes_ > 1 ? ", ..." : ""));
     return lines;
   }
 
  private:
-  /// Reads into picture_. @return why it could not; empty when it could
-  [[nodiscard]] std::string_view read_picture(const fs::path& path) {
+  /// @param image written: the picture, in memory of this source or its decoder
+  /// @return why the picture could not be read; empty when it could
+  [[nodiscard]] std::string read_picture(const fs::path& path, Image& image) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
     if (error) return "the file is not there or cannot be read";
@@ -140,38 +159,69 @@ class ImageFolderSource::Impl {
     stream.read(static_cast<char*>(static_cast<void*>(file_.data())),
                 static_cast<std::streamsize>(file_.size()));
     if (!stream) return "the file cannot be read";
-    if (const std::string_view fault = picture_file_fault(file_); !fault.empty()) return fault;
-    // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
-    picture_.release();
+    const PictureFile seen = look_at(file_);
+    if (!seen.fault.empty()) return std::string(seen.fault);
+    const auto no_memory = [&](const std::string& why) {
+      return "there is not enough memory for " +
+             (seen.width > 0 ? "a picture of " + size_text(seen.width, seen.height)
+                             : "the picture" + why);
+    };
     try {
-      picture_ = cv::imdecode(file_, flags_);
-    } catch (const cv::Exception&) {  // sizes that OpenCV refuses
+      // Four inks are OpenCV's business.
+      return jpeg_ && seen.jpeg && seen.components != 4 ? decode_jpeg(seen.orientation, image)
+                                                        : decode(image);
+    } catch (const cv::Exception& failure) {  // sizes that OpenCV refuses
+      if (failure.code == cv::Error::StsNoMem) return no_memory(" (" + one_line(failure.err) + ")");
+    } catch (const std::bad_alloc&) {
+      return no_memory("");
     }
-    return picture_.empty() ? "the file is no readable picture" : "";
+    return std::string(unreadable);
   }
 
-  void count_size(const std::string& name) {
-    if (first_size_.empty()) first_size_ = picture_.size();
-    if (picture_.size() == first_size_) return;
-    if (odd_sizes_++ == 0) odd_example_ = name + " (" + size_text(picture_.size()) + ")";
+  [[nodiscard]] std::string decode(Image& image) {
+    // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
+    picture_.release();
+    picture_ = cv::imdecode(file_, flags_);
+    if (picture_.empty()) return std::string(unreadable);
+    image = view(picture_);
+    return {};
+  }
+
+  [[nodiscard]] std::string decode_jpeg(int orientation, Image& image) {
+    const std::string_view fault =
+        jpeg_->decode({.bytes = file_, .format = RawFormat::mjpg}, image);
+    if (!fault.empty()) return std::string(fault);
+    if (orientation == 1) return {};
+    turn(matrix(image), orientation, picture_);
+    image = view(picture_);
+    return {};
+  }
+
+  void count_size(const std::string& name, const Image& image) {
+    const std::string size = size_text(static_cast<std::uint64_t>(image.width),
+                                       static_cast<std::uint64_t>(image.height));
+    if (first_size_.empty()) first_size_ = size;
+    if (size == first_size_) return;
+    if (odd_sizes_++ == 0) odd_example_ = name + " (" + size + ")";
   }
 
   fs::path folder_;
   Listing listing_;
   int flags_;
   double frames_per_second_;
+  std::unique_ptr<PictureDecoder> jpeg_;
   std::size_t next_ = 0;
   std::vector<std::uint8_t> file_;
   cv::Mat picture_;
   std::string fault_;
-  cv::Size first_size_;
+  std::string first_size_;
   std::size_t odd_sizes_ = 0;
   std::string odd_example_;
 };
 
 ImageFolderSource::ImageFolderSource(const std::filesystem::path& folder, bool gray,
-                                     double frames_per_second)
-    : impl_(std::make_unique<Impl>(folder, gray, frames_per_second)) {}
+                                     double frames_per_second, std::unique_ptr<PictureDecoder> jpeg)
+    : impl_(std::make_unique<Impl>(folder, gray, frames_per_second, std::move(jpeg))) {}
 
 ImageFolderSource::~ImageFolderSource() = default;
 

@@ -2,6 +2,7 @@
 #include "seqloop/opencv/source.hpp"
 
 #include <string>
+#include <utility>
 
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/image_folder_source.hpp"
@@ -9,14 +10,14 @@
 
 namespace seqloop::opencv {
 
-std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path,
-                                         const SourceOptions& options) {
+std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path, SourceOptions options) {
   const std::string name = path.string();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   switch (status.type()) {
     case std::filesystem::file_type::directory:
-      return std::make_unique<ImageFolderSource>(path, options.gray, options.frames_per_second);
+      return std::make_unique<ImageFolderSource>(path, options.gray, options.frames_per_second,
+                                                 std::move(options.jpeg));
     case std::filesystem::file_type::regular:
       if (has_image_extension(path))
         throw SetupError(

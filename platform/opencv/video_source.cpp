@@ -4,23 +4,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <vector>
 
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
+#include "opencv/detail/video_file.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::opencv {
 namespace {
 
-constexpr double default_rate = 25.0;   // frames a second, where the file does not tell
+constexpr double default_rate =
+    25.0;  // frames a second, where the file does not tell; FFmpeg's too
 constexpr double largest_count = 1e12;  // some backends report 2^63 for "unknown"
 
 /// Left to choose, OpenCV also takes a file for an image sequence and looks for cameras on the USB.
 /// GStreamer writes to stderr by itself and leaks, for nothing that FFmpeg cannot read.
 constexpr std::array<cv::VideoCaptureAPIs, 2> backends{cv::CAP_FFMPEG, cv::CAP_OPENCV_MJPEG};
+
+/// @return empty where it cannot be read
+std::vector<std::uint8_t> head_of(const std::filesystem::path& file) {
+  constexpr std::size_t as_far_as_headers_reach = 65'536;
+  std::vector<std::uint8_t> head(as_far_as_headers_reach);
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(static_cast<char*>(static_cast<void*>(head.data())),
+              static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head;
+}
 
 }  // namespace
 
@@ -40,7 +55,7 @@ class VideoSource::Impl {
         throw SetupError(
             Fault{name, "is not a video that OpenCV can read",
                   "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
-      read_properties();
+      read_properties(tells_frame_rate(head_of(file)));
       pending_ = read();  // some files open well and hold no frame
     } catch (const cv::Exception& failure) {
       throw SetupError(Fault{name, "is not a video that OpenCV can read (" + failure.err + ")"});
@@ -67,15 +82,21 @@ class VideoSource::Impl {
   [[nodiscard]] std::optional<std::uint64_t> declared() const noexcept { return declared_; }
 
   [[nodiscard]] std::vector<std::string> notes() const {
-    if (!ended_ || !declared_ || next_ >= *declared_) return {};
-    return {"the video ended after " + std::to_string(next_) + " of the " +
-            std::to_string(*declared_) + " frames that it declares"};
+    std::vector<std::string> lines;
+    if (!rate_told_)
+      lines.emplace_back(
+          "the video does not say its frame rate: it is taken for 25 frames a second");
+    if (ended_ && declared_ && next_ < *declared_)
+      lines.push_back("the video ended after " + std::to_string(next_) + " of the " +
+                      std::to_string(*declared_) + " frames that it declares");
+    return lines;
   }
 
  private:
-  void read_properties() {
+  void read_properties(bool tells_rate) {
     const double rate = capture_.get(cv::CAP_PROP_FPS);
-    if (std::isfinite(rate) && rate > 0.0) rate_ = rate;
+    rate_told_ = tells_rate && std::isfinite(rate) && rate > 0.0;
+    if (rate_told_) rate_ = rate;
     const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
     if (count >= 1.0 && count < largest_count) declared_ = static_cast<std::uint64_t>(count);
   }
@@ -108,6 +129,7 @@ class VideoSource::Impl {
   bool pending_ = false;  ///< picture_ was read ahead and not handed over yet
   bool first_ = true;
   bool ended_ = false;
+  bool rate_told_ = false;
   double rate_ = default_rate;
   double start_s_ = 0.0;  ///< the container's time of the first frame
   double time_s_ = 0.0;

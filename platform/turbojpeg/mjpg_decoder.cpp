@@ -3,7 +3,6 @@
 
 #include <turbojpeg.h>
 
-#include <charconv>
 #include <cstdint>
 #include <exception>
 #include <span>
@@ -11,14 +10,11 @@
 #include <vector>
 
 #include "seqloop/fixed_text.hpp"
+#include "turbojpeg/detail/decompress.hpp"
 #include "turbojpeg/detail/jpeg_header.hpp"
 
 namespace seqloop::turbojpeg {
 namespace {
-
-constexpr std::uint64_t most_pixels = 200'000'000;  // largest camera sensors; 0.6 GB when decoded
-
-using Decompressor = std::unique_ptr<void, decltype(&tjDestroy)>;
 
 struct Size {
   int width = 0;
@@ -41,19 +37,6 @@ Size reduced(const Size& full, const PictureNeeds& needs) {
   return smallest;
 }
 
-/// Whether libjpeg complains of a few bytes between the picture's data and its end and of nothing
-/// else: it keeps its first warning, and after the end there is no other.
-bool is_padding(std::string_view warning) {
-  constexpr std::string_view before = "Corrupt JPEG data: ";
-  constexpr std::string_view behind = " extraneous bytes before marker 0xd9";
-  if (!warning.starts_with(before) || !warning.ends_with(behind)) return false;
-  warning.remove_prefix(before.size());
-  int bytes = 0;
-  const char* end = warning.data() + warning.size() - behind.size();
-  const auto [stopped, error] = std::from_chars(warning.data(), end, bytes);
-  return error == std::errc() && stopped == end && bytes <= MjpgDecoder::most_padding;
-}
-
 }  // namespace
 
 class MjpgDecoder::Impl {
@@ -64,19 +47,12 @@ class MjpgDecoder::Impl {
   [[nodiscard]] std::string_view decode(const RawPicture& raw, Image& image) {
     if (!check(raw)) return fault_.view();
     take_memory({raw.width, raw.height});
-    // A new one for every frame (0.2 us): an old one fills in tables from the frames before.
-    const Decompressor decompressor(tjInitDecompress(), &tjDestroy);
-    if (!decompressor) return "no memory left to decode the JPEG picture";
-    const int stride = scaled_.width * channels();
-    const int failed = tjDecompress2(decompressor.get(), raw.bytes.data(), raw.bytes.size(),
-                                     pixels_.data(), scaled_.width, stride, scaled_.height,
-                                     needs_.gray_is_enough ? TJPF_GRAY : TJPF_BGR, 0);
-    if (failed != 0 && !is_padding(tjGetErrorStr2(decompressor.get()))) {
-      fault_.assign({"the JPEG picture is damaged (", tjGetErrorStr2(decompressor.get()), ")"});
+    const PixelFormat format = needs_.gray_is_enough ? PixelFormat::gray8 : PixelFormat::bgr8;
+    if (!decompress(raw.bytes, {pixels_.data(), scaled_.width, scaled_.height, format}, fault_))
       return fault_.view();
-    }
-    image = {pixels_.data(), scaled_.width, scaled_.height, static_cast<std::size_t>(stride),
-             needs_.gray_is_enough ? PixelFormat::gray8 : PixelFormat::bgr8};
+    image = {pixels_.data(), scaled_.width, scaled_.height,
+             static_cast<std::size_t>(scaled_.width) * static_cast<std::size_t>(channels()),
+             format};
     return {};
   }
 

@@ -37,6 +37,14 @@ inline std::size_t segment_end(const Bytes& jpeg, std::size_t place) {
 /// The picture's first byte of data.
 inline std::size_t data_begin(const Bytes& jpeg) { return segment_end(jpeg, segment(jpeg, 0xda)); }
 
+/// With numbers that decoders make no use of and libjpeg warns of: JFIF's revision, and where the
+/// scan's spectrum ends.
+inline Bytes with_odd_header(Bytes jpeg) {
+  jpeg.at(segment(jpeg, 0xe0) + 9) = 9;
+  jpeg.at(data_begin(jpeg) - 2) = 0;
+  return jpeg;
+}
+
 /// As cameras send it: without Huffman tables.
 inline Bytes without_tables(Bytes jpeg) {
   for (std::size_t at = segment(jpeg, 0xc4); at < jpeg.size(); at = segment(jpeg, 0xc4)) {

@@ -174,6 +174,15 @@ TEST(MjpgDecoder, PaddingIsNoDamage) {
   expect_fault(much, 64, 48, "extraneous bytes before marker 0xd9");
 }
 
+TEST(MjpgDecoder, OddHeadersAreNoDamageAndHideNone) {
+  const Bytes jpeg = test::with_odd_header(jpeg_of(textured(64, 48)));
+  EXPECT_EQ(fault_of(jpeg, 64, 48), "");
+  Bytes ended = jpeg;
+  ended.at((data_begin(jpeg) + jpeg.size()) / 2) = 0xff;
+  ended.at((data_begin(jpeg) + jpeg.size()) / 2 + 1) = 0xd9;
+  expect_fault(ended, 64, 48, "damaged (Corrupt JPEG data");
+}
+
 TEST(MjpgDecoder, EveryTruncationIsAFault) {
   const Bytes jpeg = jpeg_of(textured(40, 24));
   for (std::size_t size = 0; size < jpeg.size(); ++size) {

@@ -73,6 +73,42 @@ TEST_F(VideoSourceTest, NotesThatAVideoEndedEarly) {
   EXPECT_TRUE(says(source.notes()[0], "ended after " + std::to_string(count) + " of the 12"));
 }
 
+/// Little-endian, as AVI files have them.
+void set_number(std::string& bytes, std::size_t place, std::uint32_t value) {
+  for (std::size_t i = 0; i < 4; ++i) bytes.at(place + i) = static_cast<char>(value >> 8 * i);
+}
+
+// Bad input: a video without a frame rate, which OpenCV silently takes for 25.
+TEST_F(VideoSourceTest, NotesThatAVideoHasNoFrameRate) {
+  const TemporaryFolder folder;
+  const std::string whole = test::read_all(make_video(folder));
+  const std::size_t frame_time = whole.find("avih") + 8;
+  const std::size_t rate = whole.find("strh") + 8 + 20;  // scale, rate
+  const std::vector<std::string> nothing;
+  const auto notes = [&](bool has_time, bool has_rate) {
+    std::string file = whole;
+    if (!has_time) set_number(file, frame_time, 0);
+    if (!has_rate) set_number(file, rate + 4, 0);
+    VideoSource source(folder.write("drive.avi", file), false);
+    Frame frame;
+    EXPECT_EQ(source.grab(frame), Grab::frame);
+    EXPECT_EQ(source.grab(frame), Grab::frame);
+    EXPECT_NEAR(frame.time_s, has_time || has_rate ? 0.05 : 0.04, 1e-6);
+    return source.notes();
+  };
+  EXPECT_EQ(notes(true, true), nothing);
+  EXPECT_EQ(notes(true, false), nothing);
+  EXPECT_EQ(notes(false, true), nothing);
+  const std::vector<std::string> told = notes(false, false);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(says(told[0], "does not say its frame rate: it is taken for 25 frames a second"));
+  std::string bare;  // JPEG pictures one behind the other
+  for (std::uint64_t i = 0; i < 5; ++i)
+    bare += test::encoded(test::textured(64, 48, i + 1), ".jpg");
+  VideoSource source(folder.write("drive.mjpeg", bare), false);
+  EXPECT_EQ(source.notes().size(), 1U);
+}
+
 // Bad input: everything that is no video.
 TEST_F(VideoSourceTest, RefusesWhatIsNoVideo) {
   const TemporaryFolder folder;

@@ -109,7 +109,7 @@ TEST_F(BadInput, EveryFaultAtOnce) {
       {"none.npy", "ds: 0", "k: 0", "num: 'x'", "--what"});
   const test::Outcome outcome = run("match");
   EXPECT_EQ(outcome.exit_code, 2);
-  for (const char* flag : {"--method", "--query", "--out"}) {
+  for (const char* flag : {"--query", "--out"}) {
     EXPECT_NE(outcome.err.find(flag), std::string::npos) << outcome.err;
   }
 }

@@ -325,6 +325,9 @@ TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
   expect_refused({"closes loops within a drive"});
   write_experiment(drives + std::string("[[pair]]\nname = \"p\"\nquery = \"first\"\n"));
   expect_refused({"closes loops within a drive"});
+  write_experiment(drives + std::string(pair) +
+                   "[[method]]\nname = \"m\"\ndescriptor = \"gradients\"\n");
+  expect_refused({"method 'm': method: not given"});
   write_experiment("");
   expect_refused({"nothing to run"});
   write_experiment("[[drive]\n");

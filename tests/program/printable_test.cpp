@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Text from outside on its way to a terminal.
 #include "program/process/say.hpp"
 

@@ -2,6 +2,7 @@
 // The main job through the real binary, on a drive of synthetic pictures and on synthetic
 // descriptors.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -365,6 +366,41 @@ TEST_F(Run, EvalMeasuresByTheBook) {
   EXPECT_NEAR(by_file["recall"], 2.0 / 3.0, 1e-12);
 }
 
+TEST_F(Run, EvalTakesTheLinesOfARunAndSaysWhatRecallIsOver) {
+  write_npy("map.npy", oracle::drive(3, 80, 12));
+  write_npy("drive.npy", oracle::drive(4, 60, 12));
+  const std::string drives = " map.npy --ds 10 --out ";
+  expect_done("match --query drive.npy --reference" + drives + "m.csv");
+  expect_done("run --source drive.npy --reference" + drives + "r.jsonl");
+  const std::string frames = " --frames 60 --json --matches ";
+  const auto by_match = expect_done("eval" + frames + "m.csv");
+  const auto by_run = expect_done("eval" + frames + "r.jsonl");
+  EXPECT_EQ(by_run.out, by_match.out);
+  EXPECT_EQ(nlohmann::json::parse(by_run.out)["answered"], 50);
+  EXPECT_EQ(by_run.err, "");
+  EXPECT_EQ(expect_done("eval --threshold-on score" + frames + "r.jsonl").out,
+            expect_done("eval --threshold-on score" + frames + "m.csv").out);
+  const auto as_far = expect_done("eval --json --matches r.jsonl");
+  EXPECT_EQ(nlohmann::json::parse(as_far.out)["frames"], 55);
+  EXPECT_NE(as_far.err.find("recall is over the first 55 frames only"), std::string::npos)
+      << as_far.err;
+  EXPECT_NE(as_far.err.find("--frames"), std::string::npos);
+  folder_.write("t.csv", "query,reference\n20,20\n");
+  EXPECT_EQ(expect_done("eval --truth t.csv --json --matches r.jsonl").err, "");
+}
+
+TEST_F(Run, MatchHasTheSameDefaultMethodAsRun) {
+  write_npy("drive.npy", oracle::drive(3, 80, 12));
+  const std::string match = "match --reference drive.npy --query drive.npy --k 3 --num 4 --out ";
+  expect_done(match + "default.csv");
+  expect_done(match + "o.csv --method o-seqcnnslam");
+  expect_done(match + "all.csv --method seqcnnslam");
+  EXPECT_EQ(test::read_all(file("default.csv")), test::read_all(file("o.csv")));
+  EXPECT_NE(test::read_all(file("default.csv")), test::read_all(file("all.csv")));
+  expect_done("run --source drive.npy --reference drive.npy --out r.jsonl --summary s.json");
+  EXPECT_EQ(nlohmann::json::parse(test::read_all(file("s.json")))["method"], "o-seqcnnslam");
+}
+
 TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   const auto paper = expect_done("plan --paper --max-places 1000 --descriptor-size 64 --ds 10");
   EXPECT_NE(paper.out.find("256000  map: places"), std::string::npos) << paper.out;
@@ -376,6 +412,9 @@ TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   EXPECT_NE(plan.out.find("266  descriptor distances"), std::string::npos) << plan.out;
   EXPECT_NE(plan.out.find("255  line sums"), std::string::npos) << "51 rows, 5 velocities";
   EXPECT_NE(plan.out.find("3  frames until the whole map"), std::string::npos) << plan.out;
+  for (const auto& printed : {paper, plan}) {
+    EXPECT_EQ(printed.out.find("\n               0  "), std::string::npos) << "empty buffers";
+  }
 }
 
 TEST_F(Run, VersionAndHelpEverywhere) {
@@ -384,6 +423,54 @@ TEST_F(Run, VersionAndHelpEverywhere) {
     EXPECT_NE(expect_done(verb + " --version").out.find("seqloop "), std::string::npos);
     EXPECT_NE(expect_done(verb + " --help").out.find("--config"), std::string::npos);
   }
+}
+
+/// Flags of a help text, each under its heading.
+std::map<std::string, std::string> flags_of(const std::string& help) {
+  std::map<std::string, std::string> headings;
+  std::istringstream text(help);
+  std::string heading;
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_LE(line.size(), 100U) << line;
+    if (line.ends_with(':') && !line.starts_with(' ')) heading = line.substr(0, line.size() - 1);
+    const std::size_t flag = line.find("--");
+    if (flag == 2 || line.starts_with("  -h,")) {
+      const std::string name = line.substr(flag, line.find_first_of(" ", flag) - flag);
+      EXPECT_TRUE(headings.emplace(name, heading).second) << name << " twice";
+    }
+  }
+  return headings;
+}
+
+TEST_F(Run, HelpIsGroupedAndHelpAllHasEveryFlag) {
+  const std::string help = expect_done("run --help").out;
+  const auto most_used = flags_of(help);
+  const auto all = flags_of(expect_done("run --help-all").out);
+  const std::map<std::string, std::string> wanted{{"--source", "Task"},
+                                                  {"--fps", "Source"},
+                                                  {"--model", "Model"},
+                                                  {"--ds", "Matching"},
+                                                  {"--max-uniqueness", "Decision"},
+                                                  {"--budget-total", "Budget"},
+                                                  {"--size", "Camera"},
+                                                  {"--realtime-cpus", "Real time"},
+                                                  {"--config", "General"}};
+  for (const auto& [flag, heading] : wanted) {
+    ASSERT_TRUE(most_used.contains(flag)) << flag;
+    EXPECT_EQ(most_used.at(flag), heading) << flag;
+  }
+  for (const auto& [flag, heading] : most_used) {
+    ASSERT_TRUE(all.contains(flag)) << flag;
+    EXPECT_EQ(all.at(flag), heading) << flag;
+  }
+  EXPECT_FALSE(most_used.contains("--initial-k"));
+  EXPECT_EQ(all.at("--initial-k"), "Matching");
+  EXPECT_LT(most_used.size(), 40U);
+  EXPECT_GT(all.size(), 57U);
+  EXPECT_NE(help.find(std::to_string(all.size() - most_used.size()) + " more flags: seqloop run"),
+            std::string::npos);
+  for (const std::string task : {"close loops", "localise", "time a recording", "as SeqSLAM"})
+    EXPECT_NE(help.find("\n  " + task), std::string::npos) << task;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Text from outside, damaged at random: always an answer or a SetupError, never a crash. What
 // descriptor files and pictures do is tested with their readers.
+#include <algorithm>
 #include <random>
 
 #include "evaluation/measures.hpp"
@@ -62,11 +63,25 @@ void fuzz(const std::string& good, std::uint32_t seed, Read read) {
 TEST(ReaderFuzz, MatchLists) {
   fuzz("query,match,score,uniqueness\n1,2,0.5,0.25\n2,3,1e-3,nan\n3,4,0.1,inf\n", 1,
        [](const std::string& text) {
-         const evaluation::CsvTable table(text, "m.csv");
-         const auto answers = evaluation::read_answers(table, evaluation::ThresholdOn::uniqueness);
+         const auto answers =
+             evaluation::parse_answers(text, "m.csv", evaluation::ThresholdOn::uniqueness);
          const auto measures = evaluation::measure(answers, evaluation::Truth::identity(10), 2, 10);
          EXPECT_LE(measures.correct, measures.answered);
          EXPECT_LE(measures.precision, 1.0);
+         return true;
+       });
+}
+
+TEST(ReaderFuzz, LinesOfARun) {
+  fuzz(R"({"frame":1,"match":2,"uniqueness":0.5}
+{"frame":null,"match":null,"uniqueness":null}
+{"answers":[{"frame":2,"match":3,"uniqueness":1e-3},{"frame":3,"match":7,"uniqueness":null}]}
+)",
+       6, [](const std::string& text) {
+         const auto answers =
+             evaluation::parse_answers(text, "r.jsonl", evaluation::ThresholdOn::uniqueness);
+         for (const evaluation::Answer& answer : answers)
+           EXPECT_LE(std::max(answer.query, answer.match), std::uint64_t{1} << 62U);
          return true;
        });
 }

@@ -2,19 +2,31 @@
 # SPDX-License-Identifier: MIT
 # In whole numbers, the same descriptors give the same match list, to the last byte, whatever
 # processor and kernels compare them: here, and cross-built in an emulator.
-# Usage: same_answers.sh SEQLOOP CHOSEN BUILDS SHARED
-#   SEQLOOP, CHOSEN  the program, and seqloop-chosen-kernels
-#   BUILDS           folder with aarch64/, armhf/ and sysroot/, as the presets and tools/sysroot make
-#   SHARED           folder of real data; exit code 77 where it is missing
-# With SEQLOOP_REQUIRE_DATA set, a missing folder fails.
+# Usage: same_answers.sh SEQLOOP SHARED kernels CHOSEN    CHOSEN: seqloop-chosen-kernels
+#        same_answers.sh SEQLOOP SHARED boards BUILDS
+#   SEQLOOP  the program
+#   SHARED   folder of real data
+#   BUILDS   folder with aarch64/, armhf/ and sysroot/, as the presets and tools/sysroot make
+# Exit code 77 where what it needs is missing; with SEQLOOP_REQUIRE_DATA set, that fails.
 set -euo pipefail
-seqloop=$1 chosen=$2 builds=$3 shared=$4
+seqloop=$1 shared=$2 what=$3 other=$4
 missing() {
   echo "not there: $1"
   [ -z "${SEQLOOP_REQUIRE_DATA:-}" ] || exit 1
+  exit 77
 }
 drives=$shared/data/gardens_point
-[ -d "$drives" ] || { missing "$drives"; exit 77; }
+[ -d "$drives" ] || missing "$drives"
+# The first processor has dot products of bytes, the second one has none.
+boards=("aarch64 max" "aarch64 cortex-a72" "armhf max")
+emulator_of() { echo "qemu-${1/armhf/arm}-static"; }
+program_of() { echo "$other/$1/tools/seqloop"; }
+if [ "$what" = boards ]; then
+  for arch in aarch64 armhf; do
+    [ -x "$(program_of $arch)" ] || missing "$(program_of $arch) (preset $arch)"
+    command -v "$(emulator_of $arch)" >/dev/null || missing "$(emulator_of $arch)"
+  done
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -49,19 +61,15 @@ same() {
 
 match_all native "$seqloop"
 [ "$(wc -l <native.csv)" -gt 500 ]
+if [ "$what" = boards ]; then
+  for board in "${boards[@]}"; do
+    read -r arch processor <<<"$board"
+    same "$arch-$processor" "$(emulator_of "$arch")" -cpu "$processor" \
+      -L "$other/sysroot/$arch" "$(program_of "$arch")"
+  done
+  exit
+fi
 kernels=$("$seqloop" bench --only column --n 16 --d 64 --rounds 1 --json 2>/dev/null |
   grep -o '"seqloop-int8-[a-z0-9_]*"' | sort -u | sed 's/"seqloop-int8-\(.*\)"/\1/')
 [ "$(wc -w <<<"$kernels")" -ge 2 ] || echo "only one kind of kernels runs here"
-for name in $kernels; do SEQLOOP_KERNELS=$name same "$name" "$chosen"; done
-
-# The first processor has dot products of bytes, the second one has none.
-for target in "aarch64 max" "aarch64 cortex-a72" "armhf max"; do
-  read -r arch processor <<<"$target"
-  program=$builds/$arch/tools/seqloop
-  emulator=qemu-${arch/armhf/arm}-static
-  if [ ! -x "$program" ] || ! command -v "$emulator" >/dev/null; then
-    missing "$program or $emulator (preset $arch)"
-    continue
-  fi
-  same "$arch-$processor" "$emulator" -cpu "$processor" -L "$builds/sysroot/$arch" "$program"
-done
+for name in $kernels; do SEQLOOP_KERNELS=$name same "$name" "$other"; done

@@ -3,10 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
-
-#include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
 namespace {
@@ -36,23 +32,6 @@ double area(const std::vector<CurvePoint>& curve) {
 }
 
 }  // namespace
-
-std::vector<Answer> read_answers(const CsvTable& table, ThresholdOn threshold_on) {
-  const std::size_t query = table.column("query");
-  const std::size_t match = table.column("match");
-  const std::size_t swept =
-      table.column(threshold_on == ThresholdOn::uniqueness ? "uniqueness" : "score");
-  std::vector<Answer> answers;
-  std::set<std::uint64_t> seen;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    answers.push_back({table.whole(row, query), table.whole(row, match), table.number(row, swept)});
-    if (!seen.insert(answers.back().query).second) {
-      throw SetupError(
-          {"matches", "query " + std::to_string(answers.back().query) + " is answered twice"});
-    }
-  }
-  return answers;
-}
 
 Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t tolerance,
                  std::uint64_t frames) {

@@ -4,23 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "evaluation/csv.hpp"
+#include "evaluation/match_list.hpp"
 #include "evaluation/truth.hpp"
 
 namespace seqloop::evaluation {
-
-/// An answer, and the number that a precision-recall curve sweeps: smaller is more certain.
-struct Answer {
-  std::uint64_t query;
-  std::uint64_t match;
-  double uncertainty;  ///< NaN: the least certain of all
-};
-
-/// Which column of a match list the curve sweeps.
-enum class ThresholdOn : std::uint8_t { uniqueness, score };
-
-/// Reads a match list. Throws SetupError as CsvTable does, and for a query that is answered twice.
-[[nodiscard]] std::vector<Answer> read_answers(const CsvTable& table, ThresholdOn threshold_on);
 
 struct CurvePoint {
   double recall;

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -49,24 +50,70 @@ const char* value_name(ValueKind kind) {
   return "TEXT";
 }
 
-void add_to(CLI::App& app, const Verb& verb, Given& given) {
+constexpr std::size_t help_width = 100;  // columns of the help, and of its flags alone
+constexpr std::size_t flags_width = 28;
+
+/// The words of a flag's help in lines that fit beside the flags.
+std::string in_lines(std::string_view words) {
+  std::string lines;
+  for (std::size_t used = 0; !words.empty();) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    const bool fits = used + 1 + end <= help_width - flags_width;
+    if (!lines.empty()) lines += fits ? ' ' : '\n';
+    used = fits && used > 0 ? used + 1 + end : end;
+    lines += words.substr(0, end);
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return lines;
+}
+
+/// CLI11's layout with one empty line, not two, between headings.
+class Layout : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    return CLI::detail::find_and_replace(Formatter::make_help(app, std::move(name), mode), "\n\n\n",
+                                         "\n\n");
+  }
+};
+
+/// What stands below the flags.
+std::string footer(const Verb& verb, bool show_all) {
+  const auto hidden =
+      std::ranges::count(verb.options.options(), Shown::in_help_all, &Option::shown);
+  std::string text = verb.tasks;
+  if (hidden > 0 && !show_all)
+    text += fmt::format("{}{} more flags: seqloop {} --help-all", text.empty() ? "" : "\n\n",
+                        hidden, verb.name);
+  return text;
+}
+
+/// @param show_all flags that few need are shown, too
+void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
   CLI::App* sub = app.add_subcommand(verb.name, verb.help);
   sub->allow_extras();
-  sub->add_option("--config", given.config_file, "settings from a TOML file; flags win over it");
   given.values.reserve(verb.options.options().size());
   for (const Option& option : verb.options.options()) {
     auto& [known, values] = given.values.emplace_back();
     known = &option;
-    if (option.kind == ValueKind::flag) {
-      sub->add_flag_callback(
-          "--" + option.name, [&into = values] { into = {"true"}; }, option.help);
-    } else {
-      sub->add_option("--" + option.name, values, option.help)
-          ->type_name(value_name(option.kind))
-          ->expected(1)
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    }
+    CLI::Option* flag =
+        option.kind == ValueKind::flag
+            ? sub->add_flag_callback(
+                  "--" + option.name, [&into = values] { into = {"true"}; }, in_lines(option.help))
+            : sub->add_option("--" + option.name, values, in_lines(option.help))
+                  ->type_name(value_name(option.kind))
+                  ->expected(1)
+                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    // No name: CLI11 does not show it.
+    flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }
+  const std::string general = "General";
+  sub->add_option("--config", given.config_file, "settings from a TOML file; flags win over it")
+      ->group(general);
+  sub->set_help_flag("-h,--help", "print the flags that are used most")->group(general);
+  sub->set_help_all_flag("--help-all", "print all flags")->group(general);
+  sub->set_version_flag("--version", app.version(), "print the version")->group(general);
+  sub->footer(footer(verb, show_all));
 }
 
 /// Everything that the command line and the configuration file get wrong, at once.
@@ -113,10 +160,14 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   std::vector<Given> given(verbs.size());
   CLI::App app("Visual loop closure in fixed memory and bounded time", "seqloop");
   app.set_version_flag("--version", version_line());
+  app.set_help_all_flag("--help-all", "Print all flags of all subcommands and exit");
   app.require_subcommand(1);
+  const auto layout = std::make_shared<Layout>();
+  layout->column_width(flags_width);
+  app.formatter(layout);
+  const bool show_all = std::find(argv, argv + argc, std::string_view("--help-all")) != argv + argc;
   for (std::size_t i = 0; i < verbs.size(); ++i) {
-    add_to(app, verbs[i], given[i]);
-    app.get_subcommand(verbs[i].name)->set_version_flag("--version", app.version());
+    add_to(app, verbs[i], given[i], show_all);
     for (const Option& option : verbs[i].options.options()) all_names.push_back(option.name);
   }
   if (const std::string_view first = argc > 1 ? argv[1] : "-"; !first.starts_with('-')) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace seqloop::opencv {
 namespace {
@@ -23,10 +24,11 @@ bool starts_with(Bytes bytes, const std::array<std::uint8_t, size>& start) {
 }
 
 /// @return 0 where the file is too short
-std::uint64_t big_endian(Bytes bytes, std::size_t place, std::size_t count) {
+std::uint64_t big_endian(Bytes bytes, std::uint64_t place, std::size_t count) {
   if (place > bytes.size() || count > bytes.size() - place) return 0;
   std::uint64_t value = 0;
-  for (const std::uint8_t byte : bytes.subspan(place, count)) value = value << 8 | byte;
+  for (const std::uint8_t byte : bytes.subspan(static_cast<std::size_t>(place), count))
+    value = value << 8 | byte;
   return value;
 }
 
@@ -35,50 +37,89 @@ bool is_frame(std::uint8_t marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
+/// @param segment of a JPEG's APP1, without marker and length
+/// @return EXIF's orientation; 1 where it does not say one
+int orientation_in(Bytes segment) {
+  constexpr std::array<std::uint8_t, 6> exif_start{'E', 'x', 'i', 'f', 0, 0};
+  constexpr std::uint64_t orientation_tag = 0x0112;
+  constexpr std::size_t entry_bytes = 12;  // tag, type, count, value
+  if (!starts_with(segment, exif_start)) return 1;
+  const Bytes tiff = segment.subspan(exif_start.size());
+  const bool little = !tiff.empty() && tiff[0] == 'I';
+  const auto number = [&](std::uint64_t place, std::size_t count) {
+    const std::uint64_t value = big_endian(tiff, place, count);
+    if (!little) return value;
+    return count == 2 ? (value >> 8 | (value & 0xff) << 8)
+                      : (value >> 24 | (value >> 8 & 0xff00) | (value & 0xff00) << 8 |
+                         (value & 0xff) << 24);
+  };
+  const std::uint64_t directory = number(4, 4);
+  const std::uint64_t entries = number(directory, 2);
+  for (std::uint64_t entry = 0; entry < entries; ++entry) {
+    const std::uint64_t place = directory + 2 + entry * entry_bytes;
+    if (number(place, 2) != orientation_tag) continue;
+    const std::uint64_t orientation = number(place + 8, 2);
+    return orientation >= 1 && orientation <= 8 ? static_cast<int>(orientation) : 1;
+  }
+  return 1;
+}
+
 /// Walks the segments up to the picture's data, because an embedded thumbnail has an end of its
 /// own.
-std::string_view jpeg_fault(Bytes file) {
+void look_at_jpeg(Bytes file, PictureFile& seen) {
+  seen.jpeg = true;
+  bool application_data = false;
   std::size_t place = 2;
   while (true) {
-    if (place + 4 > file.size()) return truncated;
-    if (file[place] != 0xff) return {};  // not a well-formed JPEG: the decoder's business
+    if (place + 4 > file.size()) break;
+    if (file[place] != 0xff) return;  // not a well-formed JPEG: the decoder's business
     const std::uint8_t marker = file[place + 1];
     if (marker == 0xff) {  // padding
       ++place;
       continue;
     }
-    if (is_frame(marker) &&
-        big_endian(file, place + 5, 2) * big_endian(file, place + 7, 2) > most_pixels)
-      return too_large;
-    place += 2 + static_cast<std::size_t>(big_endian(file, place + 2, 2));
-    if (place >= file.size()) return truncated;
-    if (marker == 0xda) break;  // start of scan
+    const auto length = static_cast<std::size_t>(big_endian(file, place + 2, 2));
+    if (is_frame(marker)) {
+      seen.height = big_endian(file, place + 5, 2);
+      seen.width = big_endian(file, place + 7, 2);
+      seen.components = static_cast<int>(big_endian(file, place + 9, 1));
+    }
+    place += 2 + length;
+    if (place >= file.size()) break;
+    // EXIF comes first.
+    if (marker == 0xe1 && length >= 2 && !std::exchange(application_data, true))
+      seen.orientation = orientation_in(file.subspan(place - length + 2, length - 2));
+    if (marker != 0xda) continue;  // start of scan
+    const Bytes data = file.subspan(place);
+    // Searched from behind: some cameras append data of their own.
+    if (std::find_end(data.begin(), data.end(), jpeg_end.begin(), jpeg_end.end()) != data.end())
+      return;
+    break;
   }
-  const Bytes data = file.subspan(place);
-  // Searched from behind: some cameras append data of their own.
-  const auto end = std::find_end(data.begin(), data.end(), jpeg_end.begin(), jpeg_end.end());
-  return end == data.end() ? truncated : std::string_view();
+  seen.fault = truncated;
 }
 
-std::string_view png_fault(Bytes file) {
+void look_at_png(Bytes file, PictureFile& seen) {
   constexpr std::size_t header_place = png_start.size();  // IHDR: length, type, width, height
-  if (big_endian(file, header_place + 8, 4) * big_endian(file, header_place + 12, 4) > most_pixels)
-    return too_large;
+  seen.width = big_endian(file, header_place + 8, 4);
+  seen.height = big_endian(file, header_place + 12, 4);
   std::uint64_t place = header_place;
   while (place + 12 <= file.size()) {  // a chunk has 12 bytes besides its data
-    if (big_endian(file, static_cast<std::size_t>(place) + 4, 4) == 0x49454e44) return {};  // IEND
-    place += 12 + big_endian(file, static_cast<std::size_t>(place), 4);
+    if (big_endian(file, place + 4, 4) == 0x49454e44) return;  // IEND
+    place += 12 + big_endian(file, place, 4);
   }
-  return truncated;
+  seen.fault = truncated;
 }
 
 }  // namespace
 
-std::string_view picture_file_fault(Bytes file) noexcept {
-  if (file.empty()) return "the file is empty";
-  if (starts_with(file, jpeg_start)) return jpeg_fault(file);
-  if (starts_with(file, png_start)) return png_fault(file);
-  return {};
+PictureFile look_at(Bytes file) noexcept {
+  PictureFile seen;
+  if (file.empty()) seen.fault = "the file is empty";
+  if (starts_with(file, jpeg_start)) look_at_jpeg(file, seen);
+  if (starts_with(file, png_start)) look_at_png(file, seen);
+  if (seen.width * seen.height > most_pixels) seen.fault = too_large;
+  return seen;
 }
 
 }  // namespace seqloop::opencv

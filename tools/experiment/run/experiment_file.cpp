@@ -236,6 +236,7 @@ class Reader {
     std::set<std::string> told;  // what is wrong with one combination is wrong with others
     for (const std::vector<Setting>& chosen : section.combinations(written)) {
       program::MatcherSettings matcher;
+      matcher.method.clear();  // no default here: a report says what it compares
       OptionTable options;
       add_matcher_options(options, matcher);
       section.set(options, written, chosen);

@@ -140,6 +140,7 @@ Verb bench_verb(const Peers& peers) {
       "Time describing (beside --descriptor or --model), steps and their parts here, on one thread",
       {},
       [settings, peers](Faults faults) { bench(*settings, peers, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.flag("json", settings->json, "print JSON");
   verb.options.text("only", settings->only, all_whats() + " [describe and step]");
   verb.options.add({"n", ValueKind::text, "places of the map, several with commas between [3476]",

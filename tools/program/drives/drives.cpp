@@ -11,6 +11,7 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/source.hpp"
+#include "seqloop/turbojpeg/jpeg_file_decoder.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -62,6 +63,7 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 }  // namespace
 
 void add_drive_options(OptionTable& options, DriveSettings& settings) {
+  options.section("Model");
   options.text("descriptor", settings.descriptor,
                "gradients, patches (SeqSLAM's) or words (of ORB features) [gradients]");
   options.add({"model", ValueKind::text,
@@ -73,6 +75,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                                      ? std::vector<std::filesystem::path>()
                                      : model_files(settings.model, settings.model_flags_given));
                }});
+  options.section("Model", Shown::in_help_all);
   const OptionTable model = model_options(settings.model);
   for (Option option : model.options()) {
     option.set = [&settings, name = option.name, set = option.set](std::string_view value) {
@@ -93,6 +96,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                [&settings](std::string_view value) {
                  settings.remove_components = parse_count_to(value, 999);
                }});
+  options.section("Source");
   options.add({"fps", ValueKind::number,
                "frames a second: of an image folder; of a camera, at least [10]",
                [&settings](std::string_view value) {
@@ -120,7 +124,8 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     return std::make_unique<files::DescriptorSource>(read_descriptors(path, settings.difference),
                                                      settings.fps);
   }
-  return opencv::open_source(path, {.frames_per_second = settings.fps});
+  return opencv::open_source(path, {.frames_per_second = settings.fps,
+                                    .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false)});
 }
 
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {

@@ -10,8 +10,9 @@
 namespace seqloop::program {
 
 void add_camera_options(OptionTable& options, CameraSettings& settings) {
+  options.section("Camera");
   options.add({"format", ValueKind::text,
-               "of a camera: GREY, BGR3, RGB3, YUYV, UYVY, NV12, YU12 or MJPG [the cheapest]",
+               "GREY, BGR3, RGB3, YUYV, UYVY, NV12, YU12 or MJPG [the cheapest]",
                [&settings](std::string_view value) {
                  settings.format = live::format_named(value);
                  if (!settings.format) {
@@ -21,7 +22,7 @@ void add_camera_options(OptionTable& options, CameraSettings& settings) {
                  }
                }});
   options.add({"size", ValueKind::size,
-               "of a camera's pictures: WxH, exactly [the cheapest that the descriptor can use]",
+               "of the pictures: WxH, exactly [the cheapest that the descriptor can use]",
                [&settings](std::string_view value) { settings.size = parse_size(value); }});
 }
 

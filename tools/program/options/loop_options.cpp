@@ -45,8 +45,10 @@ std::string_view name(OverloadPolicy policy) noexcept {
 }
 
 void add_loop_options(OptionTable& options, LoopSettings& settings) {
+  options.section("Budget");
   options.number("budget-total", settings.total_ms,
                  "milliseconds that grab, describe and match may take together [40]");
+  options.section("Budget", Shown::in_help_all);
   options.number("budget-age", settings.age_ms,
                  "how old a live picture may be when it is taken up, in milliseconds [0: any]");
   options.number("budget-grab", settings.grab_ms, "milliseconds for reading and decoding [0: any]");

@@ -67,8 +67,10 @@ FullMap parse_full_map(std::string_view text) {
 
 void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   MatcherConfig& config = settings.config;
+  options.section("Matching");
   options.text("method", settings.method,
-               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence");
+               "seqslam, seqcnnslam, a-seqcnnslam, o-seqcnnslam, or single: no sequence "
+               "[o-seqcnnslam]");
   options.flag("paper", settings.paper, "follow the paper to the letter");
   options.add(
       {"ds", ValueKind::count, "sequence length, frames [20]", [&settings](std::string_view value) {
@@ -77,14 +79,17 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        }});
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
-  options.count("rwindow", config.rwindow,
-                "rows around the best that cannot be the runner-up [10]");
+  options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
+  options.add({"full-map", ValueKind::text,
+               "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
+               "where they are densest [refuse]",
+               [&config](std::string_view value) { config.full_map = parse_full_map(value); }});
+  options.section("Matching", Shown::in_help_all);
   options.count("k", config.k, "a-seqcnnslam: candidate ranges [10]");
   options.count("num", config.num, "a range holds this many rows and one [16]");
   options.count("reinit", config.reinit,
                 "without relocalising: matched frames from one full search to the next [450]");
   options.count("initial-k", config.initial_k, "o-seqcnnslam: ranges at first [30]");
-  options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
   options.add(
       {"standardise", ValueKind::on_off,
        "weigh features by their running statistics [on; off under --paper and for seqslam]",
@@ -93,8 +98,6 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "frames that the map's statistics count for in a new drive [20]");
   options.count("standardise-horizon", config.standardisation.horizon,
                 "frames after which statistics have mostly moved on [100]");
-  options.number("max-uniqueness", config.max_uniqueness,
-                 "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
   options.add(
       {"difference", ValueKind::text,
        "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
@@ -115,10 +118,11 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "places of the map that a frame scans to relocalise [4096]");
   options.count("distances", config.relocalising.distances,
                 "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
-  options.add({"full-map", ValueKind::text,
-               "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
-               "where they are densest [refuse]",
-               [&config](std::string_view value) { config.full_map = parse_full_map(value); }});
+  options.section("Decision");
+  options.number("max-uniqueness", config.max_uniqueness,
+                 "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
+  options.count("rwindow", config.rwindow,
+                "rows around the best that cannot be the runner-up [10]");
 }
 
 std::vector<std::string> method_names() {

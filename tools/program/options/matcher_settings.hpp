@@ -13,7 +13,7 @@ namespace seqloop::program {
 /// The matcher as the command line puts it.
 struct MatcherSettings {
   MatcherConfig config;
-  std::string method;
+  std::string method = "o-seqcnnslam";
   bool paper = false;
   bool ds_given = false;
   std::optional<Difference> difference;  ///< mean absolute for SeqSLAM alone, when nobody says

@@ -145,6 +145,17 @@ std::vector<FileUse> OptionTable::files() const {
   return all;
 }
 
+void OptionTable::add(Option option) {
+  option.section = section_;
+  option.shown = shown_;
+  options_.push_back(std::move(option));
+}
+
+void OptionTable::section(std::string heading, Shown shown) {
+  section_ = std::move(heading);
+  shown_ = shown;
+}
+
 const Option* OptionTable::find(std::string_view name) const noexcept {
   const auto found = std::ranges::find(options_, name, &Option::name);
   return found == options_.end() ? nullptr : &*found;

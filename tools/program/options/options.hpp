@@ -24,6 +24,12 @@ enum class ValueKind {
   triple   ///< three numbers B,G,R; in TOML an array too
 };
 
+/// When a flag is shown.
+enum class Shown {
+  in_help,     ///< by --help
+  in_help_all  ///< by --help-all only: few need it
+};
+
 /// One setting: a long flag, and a TOML key of the same name.
 struct Option {
   std::string name;  ///< without dashes in front
@@ -33,6 +39,8 @@ struct Option {
   std::function<void(std::string_view)> set;
   /// What is read and written by it, once everything is set. May throw SetupError.
   std::function<std::vector<FileUse>()> files = {};
+  std::string section = "Options";  ///< heading of the help
+  Shown shown = Shown::in_help;
 };
 
 /// The settings of one subcommand. Every value is taken as text and converted here, so that all
@@ -50,7 +58,10 @@ class OptionTable {
   void folder(std::string name, std::filesystem::path& target, std::vector<std::string> files,
               std::string help);
   void on_off(std::string name, bool& target, std::string help);
-  void add(Option option) { options_.push_back(std::move(option)); }
+  void add(Option option);
+
+  /// Says what all settings that are added from here on belong to.
+  void section(std::string heading, Shown shown = Shown::in_help);
 
   [[nodiscard]] const std::vector<Option>& options() const noexcept { return options_; }
   [[nodiscard]] const Option* find(std::string_view name) const noexcept;
@@ -63,6 +74,8 @@ class OptionTable {
 
  private:
   std::vector<Option> options_;
+  std::string section_ = "Options";
+  Shown shown_ = Shown::in_help;
 };
 
 /// @return the name that is written most like this one, when one is near enough to be meant

@@ -38,6 +38,7 @@ live::ThreadSettings RealTimeSettings::capture_thread() const {
 }
 
 void add_real_time_options(OptionTable& options, RealTimeSettings& settings) {
+  options.section("Real time");
   options.add({"realtime-priority", ValueKind::count,
                "SCHED_FIFO priority of a live loop, 1 to 98; its capture thread gets one more [0: "
                "ordinary scheduling]",

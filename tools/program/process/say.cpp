@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/say.hpp"
 
 #include <algorithm>

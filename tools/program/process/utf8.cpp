@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/process/utf8.hpp"
 
 #include <array>

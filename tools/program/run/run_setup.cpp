@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,12 +21,24 @@
 namespace seqloop::program {
 namespace {
 
-/// Rows that the map needs: asked for, or as many as the drive has, or a round number.
-std::size_t places_for(const RunSettings& settings, const FrameSource* drive) {
+/// Sets the rows that the map needs: asked for, or as many as the drive has, or a round number.
+/// @param drive that makes the map, of that name; null: a camera
+void choose_places(RunSetup& setup, const RunSettings& settings, const FrameSource* drive,
+                   const std::filesystem::path& name) {
   constexpr std::size_t unknown_length = 20'000;
-  if (settings.max_places > 0) return settings.max_places;
   const auto frames = drive == nullptr ? std::nullopt : drive->frame_count();
-  return static_cast<std::size_t>(frames.value_or(unknown_length));
+  setup.places = static_cast<std::size_t>(std::min<std::uint64_t>(
+      frames.value_or(unknown_length), std::numeric_limits<std::size_t>::max()));
+  setup.why_places = {"max-places",
+                      frames
+                          ? fmt::format("not given, and {} declares {} frames: there is room for "
+                                        "as many places",
+                                        name.string(), *frames)
+                          : fmt::format("not given: there is room for {} places", setup.places),
+                      "--max-places N makes room for fewer"};
+  if (settings.max_places == 0) return;
+  setup.places = settings.max_places;
+  setup.why_places = {"max-places", fmt::format("room for {} places is asked for", setup.places)};
 }
 
 void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) {
@@ -94,7 +108,8 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                                 : setup.describer->size();
   };
   setup.descriptor_size = size_of(setup.recording.get());
-  setup.places = places_for(settings, closing ? setup.recording.get() : setup.reference.get());
+  choose_places(setup, settings, closing ? setup.recording.get() : setup.reference.get(),
+                closing ? settings.source : settings.reference);
   if (setup.reference && size_of(setup.reference.get()) != setup.descriptor_size) {
     faults.push_back({"reference, source",
                       fmt::format("descriptors of {} and of {} values",

@@ -55,6 +55,7 @@ struct RunSetup {
   std::unique_ptr<files::OutputFile> summary;  ///< none unless asked for
   std::size_t descriptor_size = 0;
   std::size_t places = 0;
+  Fault why_places;  ///< who wants so many; a fault only where they cannot be had
 
   /// Where frames come from.
   [[nodiscard]] FrameSource& source() const noexcept {

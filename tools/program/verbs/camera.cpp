@@ -119,6 +119,7 @@ Verb camera_verb() {
             "List cameras with what they offer, or capture from one and report on its frames",
             {},
             [settings](Faults faults) { look_at_cameras(*settings, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.text("device", settings->device,
                     "/dev/video0, or a link to it [all; for --frames, the first camera]");
   verb.options.add({"frames", ValueKind::count, "frames to capture; without it, cameras are listed",

@@ -71,13 +71,14 @@ Verb describe_verb() {
       "describe", "Write the descriptors of every frame of a drive", {}, [settings](Faults faults) {
         describe(*settings, std::move(faults));
       }};
+  verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0, until interrupted), image folder or video file");
   verb.options.path("out", Access::writes, settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
-  add_camera_options(verb.options, settings->camera);
   add_drive_options(verb.options, settings->drive);
+  add_camera_options(verb.options, settings->camera);
   return verb;
 }
 

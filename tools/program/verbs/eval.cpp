@@ -45,8 +45,7 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
   if (!settings.matches.empty()) {
     collect(faults, [&] {
       answers = evaluation::read_answers(
-          evaluation::CsvTable::read(settings.matches),
-          settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
+          settings.matches, settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
     });
   }
   evaluation::Truth truth = read_truth(settings.truth, faults);
@@ -61,6 +60,11 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
   if (identity) truth = evaluation::Truth::identity(identity_frames(settings, answers));
 
   const std::uint64_t frames = settings.frames > 0 ? settings.frames : truth.frames();
+  if (identity && settings.frames == 0) {
+    say("recall is over the first {} frames only, as far as the answers reach; --frames N says how "
+        "many the drive has",
+        frames);
+  }
   const evaluation::Measures measures = measure(answers, truth, settings.truth.tolerance, frames);
   if (settings.json) {
     const nlohmann::ordered_json json{
@@ -127,8 +131,9 @@ Verb eval_verb(ExperimentRunner run_experiment) {
             [settings, run_experiment = std::move(run_experiment)](Faults faults) {
               eval(*settings, run_experiment, std::move(faults));
             }};
+  verb.options.section("Answers");
   verb.options.path("matches", Access::reads, settings->matches,
-                    "match list (CSV), as `match` writes it");
+                    "answers: the match list (CSV) of `match`, or the JSON lines of `run`");
   add_truth_options(verb.options, settings->truth);
   verb.options.add(
       {"threshold-on", ValueKind::text, "what the curve sweeps: uniqueness or score [uniqueness]",
@@ -137,6 +142,7 @@ Verb eval_verb(ExperimentRunner run_experiment) {
       "frames", settings->frames,
       "queries that have a truth [as the truth file says, or as far as the matches reach]");
   verb.options.flag("json", settings->json, "print JSON");
+  verb.options.section("Experiment");
   verb.options.path("experiment", Access::reads, settings->experiment,
                     "methods x parameters x drives to run, TOML; goes on where it was interrupted");
   verb.options.folder("out", settings->out, {"index.html", "results.csv"},

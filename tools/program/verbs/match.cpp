@@ -124,6 +124,7 @@ Verb match_verb() {
             "Match the descriptors of one drive with those of another, or with its own",
             {},
             [settings](Faults faults) { match(*settings, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.path("reference", Access::reads, settings->reference,
                     "descriptors of the map, .npy [close loops within the query]");
   verb.options.path("query", Access::reads, settings->query, "descriptors of the drive, .npy");

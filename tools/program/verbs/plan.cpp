@@ -20,7 +20,7 @@ struct PlanSettings {
 
 void print_buffers(const char* owner, const std::vector<BufferSize>& buffers) {
   for (const BufferSize& buffer : buffers) {
-    fmt::print("{:>16}  {}: {}\n", buffer.bytes, owner, buffer.name);
+    if (buffer.bytes > 0) fmt::print("{:>16}  {}: {}\n", buffer.bytes, owner, buffer.name);
   }
 }
 
@@ -59,11 +59,11 @@ void plan(const PlanSettings& settings, Faults faults) {
 
 Verb plan_verb() {
   const auto settings = std::make_shared<PlanSettings>();
-  settings->matcher.method = "o-seqcnnslam";
   Verb verb{"plan",
             "Print the memory and the work that a configuration takes, without starting it",
             {},
             [settings](Faults faults) { plan(*settings, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.count("max-places", settings->places, "places of the map [3476]");
   verb.options.count("descriptor-size", settings->descriptor_size,
                      "values in a descriptor [735, the built-in one]");

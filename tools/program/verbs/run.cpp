@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -55,6 +56,20 @@ void become_real_time(const RealTimeSettings& settings) {
   live::touch_stack();
 }
 
+/// Makes what is as large as the map; where that cannot be, says who wants it so large.
+template <class Make>
+auto with_room(const RunSetup& setup, Make make) {
+  Faults faults{setup.why_places};
+  try {
+    return make();
+  } catch (const SetupError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+  } catch (const std::bad_alloc&) {
+    faults.push_back({"memory", "there is not enough"});
+  }
+  throw SetupError(std::move(faults));
+}
+
 void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
@@ -63,7 +78,9 @@ void run(const RunSettings& settings, Faults faults) {
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
   // Start-up: the map, then every path once, before the first frame counts.
-  PlaceMap map(setup.config, {setup.places, setup.descriptor_size});
+  PlaceMap map = with_room(setup, [&] {
+    return PlaceMap(setup.config, {setup.places, setup.descriptor_size});
+  });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     const std::size_t blank_places =
@@ -71,7 +88,7 @@ void run(const RunSettings& settings, Faults faults) {
     tell_notes(settings.reference, *setup.reference);
     tell_blank(settings.reference, blank_places, map.size());
   }
-  Detector detector(setup.config, map);
+  Detector detector = with_room(setup, [&] { return Detector(setup.config, map); });
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
   PictureRecorder recorder(setup.config.difference);
@@ -86,7 +103,9 @@ void run(const RunSettings& settings, Faults faults) {
   const live::ThreadCounters warm = live::thread_counters();
 
   const bool closing = settings.reference.empty();
-  SourceNumbers numbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  SourceNumbers numbers = with_room(setup, [&] {
+    return SourceNumbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
+  });
   std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
@@ -168,15 +187,31 @@ Pace parse_pace(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is neither live nor max");
 }
 
+constexpr std::string_view tasks =
+    R"(Tasks, and what is taken by default:
+  close loops       --source DRIVE                  room for as many places as DRIVE has frames; the
+                                                    newest 100 frames are no places (--exclude)
+  localise          --source DRIVE --reference MAP  a place for each frame of MAP
+  run on a camera   --source /dev/video0            room for 20000 places; the cheapest mode of 10
+                                                    frames a second or more; late frames dropped
+  time a recording  --source DRIVE --pace live      10 frames a second of a folder; late frames
+                                                    dropped; histograms with --summary FILE
+  follow the paper  --paper                         --standardise off --relocalise off
+                                                    --arithmetic float
+  as SeqSLAM does   --method seqslam                --descriptor patches --enhance on
+                                                    --difference mean-absolute --standardise off
+                                                    --arithmetic float)";
+
 }  // namespace
 
 Verb run_verb() {
   const auto settings = std::make_shared<RunSettings>();
-  settings->matcher.method = "o-seqcnnslam";
-  Verb verb{
-      "run", "Grab, describe, match and decide, frame by frame", {}, [settings](Faults faults) {
-        run(*settings, std::move(faults));
-      }};
+  Verb verb{"run",
+            "Grab, describe, match and decide, frame by frame",
+            {},
+            [settings](Faults faults) { run(*settings, std::move(faults)); },
+            std::string(tasks)};
+  verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0), image folder, video file or descriptors (.npy)");
   verb.options.path("reference", Access::reads, settings->reference,
@@ -186,21 +221,23 @@ Verb run_verb() {
   verb.options.path("summary", Access::writes, settings->summary,
                     "counts and latency histograms of the run, as JSON [none]");
   verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
-                      "folder for the difference matrix and a sheet of matched pairs");
+                      "folder for the difference matrix and a sheet of matched pairs [none]");
+  verb.options.section("Source");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "
                     "as it goes [max]",
                     [settings](std::string_view value) { settings->pace = parse_pace(value); }});
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
-  verb.options.count("max-places", settings->max_places,
-                     "room in the map [as long as the drive, 20000 where that is not known]");
-  verb.options.number("give-up-s", settings->give_up_s,
-                      "seconds without a frame after which a camera is given up [0: never]");
-  add_loop_options(verb.options, settings->loop);
-  add_real_time_options(verb.options, settings->real_time);
-  add_camera_options(verb.options, settings->camera);
   add_drive_options(verb.options, settings->drive);
   add_matcher_options(verb.options, settings->matcher);
+  verb.options.section("Matching");
+  verb.options.count("max-places", settings->max_places,
+                     "room in the map [as long as the drive, 20000 where that is not known]");
+  add_loop_options(verb.options, settings->loop);
+  add_camera_options(verb.options, settings->camera);
+  verb.options.number("give-up-s", settings->give_up_s,
+                      "seconds without a frame after which a camera is given up [0: never]");
+  add_real_time_options(verb.options, settings->real_time);
   return verb;
 }
 

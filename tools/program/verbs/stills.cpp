@@ -157,6 +157,7 @@ Verb stills_verb() {
             "Take stills of a drive at even times, resized and cropped",
             {},
             [settings](Faults faults) { take_stills(*settings, std::move(faults)); }};
+  verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source, "image folder or video file");
   verb.options.folder("out", settings->out, {}, "folder to make: 000000.png ... and stills.csv");
   verb.options.add(

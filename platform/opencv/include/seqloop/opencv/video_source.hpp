@@ -11,9 +11,10 @@ namespace seqloop::opencv {
 /// A drive as a video file, read by the first of OpenCV's backends that can: FFmpeg, GStreamer, the
 /// built-in motion JPEG.
 ///
-/// Times are the container's own where they rise, else index / frame rate. A file that is broken in
-/// the middle ends there, or goes on with damaged pictures, as the backend has it: it tells
-/// neither. When fewer frames came than the file promised, `notes` says so.
+/// Times are the container's own where they rise, else index / frame rate; `notes` says when the
+/// file has no frame rate. A file that is broken in the middle ends there, or goes on with damaged
+/// pictures, as the backend has it: it tells neither. When fewer frames came than the file
+/// promised, `notes` says so.
 class VideoSource : public FrameSource {
  public:
   /// @param gray hand over grey pictures

@@ -19,15 +19,11 @@ namespace seqloop::turbojpeg {
 ///
 /// Faults are: bytes that are no whole baseline JPEG picture of one or three components; a size
 /// other than the camera agreed to; and whatever libjpeg warns of, because it then makes up the
-/// rest of the picture. Damage that leaves valid codes behind cannot be seen. What comes after the
-/// picture's end is padding and is not looked at; so are up to `most_padding` bytes just before the
-/// end, which some cameras put there.
+/// rest of the picture, save what is harmless. Damage that leaves valid codes behind cannot be
+/// seen. What comes after the picture's end is padding and is not looked at; so are up to 4 bytes
+/// just before the end, which some cameras put there.
 class MjpgDecoder : public PictureDecoder {
  public:
-  /// In bytes, beyond those that libjpeg has read ahead. Of 1,847 damaged pictures whose damage
-  /// libjpeg sees, 7 pass for padded at 4 bytes and 20 at 16.
-  static constexpr int most_padding = 4;
-
   explicit MjpgDecoder(const PictureNeeds& needs);
   MjpgDecoder(const MjpgDecoder&) = delete;
   MjpgDecoder& operator=(const MjpgDecoder&) = delete;
