@@ -227,8 +227,9 @@ TEST_F(BadInput, AnOutputIsNoModelAndNoSettingsEither) {
   folder_.write("c.toml", "ds = 5\n");
   std::filesystem::create_hard_link(file("net.onnx"), file("twin"));
   std::filesystem::create_symlink(".", file("here"));
-  for (const std::string out : {"net.onnx", "./net.onnx", "twin", "here/net.toml",
-                                "../" + folder_.path().filename().string() + "/net.prototxt"}) {
+  const std::string here = "../" + folder_.path().filename().string();
+  for (const std::string& out : std::vector<std::string>{"net.onnx", "./net.onnx", "twin",
+                                                         "here/net.toml", here + "/net.prototxt"}) {
     expect_refused("describe --source drive --model net.onnx --out " + out,
                    {"destroy an input (model)"});
   }

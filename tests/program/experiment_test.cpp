@@ -226,6 +226,20 @@ TEST_F(Experiments, WriteOverNothingThatTheyRead) {
   EXPECT_EQ(test::read_all(file("out/results.csv")), "query,reference\n1,1\n");
 }
 
+TEST_F(Experiments, SayWhatHasNothingToShow) {
+  write_experiment(std::string(drives) + pair + methods + "where = { ds = [16, 17] }\n" +
+                   "[[figure]]\ntitle = \"Others\"\nwhere = { method = \"others\" }\n");
+  const std::string err = expect_done().err;
+  EXPECT_NE(err.find("table 'Numbers': nothing to show: no result has ds 16 or 17"),
+            std::string::npos)
+      << err;
+  EXPECT_NE(err.find("figure 'Others': nothing to show"), std::string::npos) << err;
+  EXPECT_EQ(err.find("figure 'Curves'"), std::string::npos) << err;
+  const std::string page = test::read_all(file("out/index.html"));
+  EXPECT_NE(page.find("Table 1. Numbers"), std::string::npos);
+  EXPECT_NE(page.find("nothing to show: no result has ds 16 or 17"), std::string::npos);
+}
+
 TEST_F(Experiments, MakeDamagedPicturesAnew) {
   write_experiment(std::string(drives) + pair + methods);
   expect_done();
@@ -241,7 +255,8 @@ TEST_F(Experiments, MakeDamagedPicturesAnew) {
   std::filesystem::resize_file(pictures[1], png.size() / 3);
   EXPECT_NE(expect_done().err.find("matching 2/2"), std::string::npos);
   const auto matrices = [](const std::string& html) {
-    return html.substr(html.find("Difference matrices"), html.find("All results"));
+    const std::size_t begin = html.find("<h2>Difference matrices");
+    return html.substr(begin, html.find("</section>", begin) - begin);
   };
   EXPECT_EQ(matrices(test::read_all(file("out/index.html"))), matrices(page));
   EXPECT_EQ(expect_done().err.find("matching"), std::string::npos);

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "experiment/report/report.hpp"
+#include "experiment/report/selection.hpp"
 #include "experiment/run/described_drives.hpp"
 #include "experiment/run/experiment.hpp"
 #include "experiment/run/fingerprint.hpp"
@@ -19,9 +20,11 @@
 #include "experiment/run/summary.hpp"
 #include "files/text_file.hpp"
 #include "program/drives/drive_length.hpp"
+#include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
 #include "program/process/outputs.hpp"
+#include "program/process/say.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/opencv/threads.hpp"
 
@@ -223,7 +226,8 @@ class Runner {
       files::OutputFile out(file(run, "png"));
       out.write(bytes);
       out.commit();
-      result.matrix = fingerprint({matched.matrix_png.begin(), matched.matrix_png.end()});
+      result.matrix =
+          fingerprint(std::string(matched.matrix_png.begin(), matched.matrix_png.end()));
     }
     keep_result(result, file(run, "json"));
   }
@@ -335,6 +339,16 @@ class Runner {
   std::vector<std::optional<KeptFrames>> kept_frames_;  // of each pair that leaves some out
 };
 
+/// Somebody may wait for a figure or a table for which there are no results: a mistyped filter.
+void tell_what_is_empty(const Report& report) {
+  const auto tell = [&](const char* kind, const auto& shown) {
+    if (!choose(report.results, shown.where).empty()) return;
+    program::say("{} '{}': {}", kind, shown.title, nothing_to_show(shown.where));
+  };
+  for (const Figure& figure : report.figures) tell("figure", figure);
+  for (const Table& table : report.tables) tell("table", table);
+}
+
 }  // namespace
 
 void run_experiment(const std::filesystem::path& file, const std::filesystem::path& data,
@@ -345,7 +359,9 @@ void run_experiment(const std::filesystem::path& file, const std::filesystem::pa
   runner.check(faults);
   program::refuse(std::move(faults));
   runner.run(threads);
-  write_report(runner.report(), folder);
+  const Report report = runner.report();
+  write_report(report, folder);
+  tell_what_is_empty(report);
 }
 
 }  // namespace seqloop::experiment
