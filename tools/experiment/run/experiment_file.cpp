@@ -172,7 +172,7 @@ class Reader {
     options.number("dark-below", rule.dark_below, "");
     options.number("standing-below", rule.standing_below, "");
     pair.settings = section.set_all(options, {"name", "reference", "query"});
-    if (!by_identity(pair.truth)) find(pair.truth.file);
+    if (by_file(pair.truth)) find(pair.truth.file);
     find(pair.truth.reference_positions);
     find(pair.truth.query_positions);
     if (rule.dark_below > 0.0 || rule.standing_below > 0.0) pair.leave_out = rule;

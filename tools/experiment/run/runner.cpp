@@ -215,7 +215,7 @@ class Runner {
     if (!pair.reference.empty()) {
       from.push_back(drives_.file(pair.reference, run.descriptor).filename().string());
     }
-    if (!pair.truth.file.empty() && !by_identity(pair.truth)) {
+    if (by_file(pair.truth)) {
       from.push_back(state_of(pair.truth.file));
     }
     for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {
