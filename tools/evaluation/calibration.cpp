@@ -29,6 +29,16 @@ void add_answer(Reliability& reliability, double probability, bool right) noexce
   into.probability_sum += probability;
 }
 
+Reliability together(const Reliability& a, const Reliability& b) noexcept {
+  Reliability sum = a;
+  for (std::size_t bin = 0; bin < sum.size(); ++bin) {
+    sum[bin].count += b[bin].count;
+    sum[bin].right += b[bin].right;
+    sum[bin].probability_sum += b[bin].probability_sum;
+  }
+  return sum;
+}
+
 double expected_calibration_error(const Reliability& reliability) noexcept {
   std::uint64_t answers = 0;
   double off = 0.0;

@@ -26,6 +26,9 @@ using Reliability = std::array<ReliabilityBin, reliability_bins>;
 /// @param probability 0 .. 1; an answer with NaN says nothing of itself and is left out
 void add_answer(Reliability& reliability, double probability, bool right) noexcept;
 
+/// Both counted as one.
+[[nodiscard]] Reliability together(const Reliability& a, const Reliability& b) noexcept;
+
 /// How far probabilities are off: |share right - mean probability| of each bin, weighed by the
 /// share of the answers that it holds. 0 is perfect, 1 the worst; NaN without answers.
 /// Source: Naeini, Cooper, Hauskrecht, Obtaining Well Calibrated Probabilities Using Bayesian
