@@ -50,6 +50,31 @@ TEST(MatchList, SeveralAnswersOfALineStandForTheLine) {
                  {{3, 8, 0.25}, {4, 9, 0.5}});
 }
 
+TEST(MatchList, BothSayHowProbableAnAnswerIsAndWhetherItIsAccepted) {
+  const std::string table =
+      "query,match,score,uniqueness,probability,accepted\n"
+      "5,70,0.25,0.5,0.75,1\n6,71,0.5,nan,nan,0\n7,72,0.5,0.5,1,0\n";
+  const std::string lines = R"({"answers":[
+{"frame":5,"status":"match","match":70,"uniqueness":0.5,"probability":0.75},
+{"frame":6,"status":"not_unique","match":71,"uniqueness":null,"probability":null},
+{"frame":7,"status":"unsure","match":72,"uniqueness":0.5,"probability":1}]})";
+  std::string line = lines;
+  std::erase(line, '\n');
+  for (const std::string& text : {table, line}) {
+    const std::vector<Answer> found = answers(text, ThresholdOn::probability);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0].probability, 0.75);
+    EXPECT_EQ(found[0].accepted, true);
+    EXPECT_TRUE(std::isnan(found[1].probability));
+    EXPECT_EQ(found[1].accepted, false);
+    EXPECT_LT(found[2].uncertainty, found[0].uncertainty) << "a larger probability is more certain";
+    EXPECT_EQ(found[2].accepted, false);
+  }
+  const std::vector<Answer> without = answers("query,match,score,uniqueness\n1,2,0.5,0.9\n");
+  EXPECT_TRUE(std::isnan(without.at(0).probability));
+  EXPECT_FALSE(without[0].accepted.has_value());
+}
+
 TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
   const auto refused = [](const std::string& text) {
     return test::setup_error([&] { (void)answers(text); });
@@ -68,6 +93,8 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
                          "'frame' is no whole number"));
   EXPECT_TRUE(test::says(refused("{\"frame\":1,\"match\":2,\"uniqueness\":\"low\"}"),
                          "'uniqueness' is no number"));
+  EXPECT_TRUE(test::says(refused("{\"frame\":1,\"match\":2,\"uniqueness\":0,\"probability\":1.5}"),
+                         "'probability' is not from 0 to 1"));
   EXPECT_TRUE(test::says(refused("{\"answers\":3}"), "'answers' is no array"));
   EXPECT_TRUE(test::says(refused("{\"answers\":[3]}"), "'answers' holds what is no JSON object"));
   EXPECT_TRUE(test::says(refused(""), "empty"));

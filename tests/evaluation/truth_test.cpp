@@ -56,6 +56,45 @@ TEST(Truth, ByPositionsOnAPlan) {
   EXPECT_FALSE(truth.right(8, 2, 0));
 }
 
+TEST(Truth, WhatIsNotListedCanBeUnknown) {
+  const CsvTable table("query,reference\n4,10\n", "t.csv");
+  EXPECT_TRUE(Truth::from_csv(table).judges(5));
+  const Truth truth = Truth::from_csv(table, Unlisted::unknown);
+  EXPECT_TRUE(truth.judges(4));
+  EXPECT_FALSE(truth.judges(5));
+  // A frame whose position is known, far from all others, is new.
+  const Positions here = positions("frame,x,y\n0,0,0\n");
+  const Positions there = positions("frame,x,y\n0,0,0\n1,99,0\n");
+  const Truth placed = Truth::from_positions(here, there, 5.0, Unlisted::unknown);
+  EXPECT_EQ(placed.frames(), 1U);
+  EXPECT_TRUE(placed.judges(1));
+  EXPECT_FALSE(placed.right(1, 0, 9));
+  EXPECT_FALSE(placed.judges(2));
+}
+
+TEST(Truth, WithoutARevisitNothingIsRight) {
+  const Truth truth = Truth::no_revisit();
+  EXPECT_EQ(truth.frames(), 0U);
+  EXPECT_TRUE(truth.judges(3));
+  EXPECT_FALSE(truth.right(3, 3, 100));
+}
+
+TEST(Truth, OfLapsIsTheSameFrameOfAnyLapBefore) {
+  const Truth truth = Truth::laps(10, 3);
+  EXPECT_EQ(truth.frames(), 20U);
+  EXPECT_EQ(truth.queries_reach(), 30U);
+  EXPECT_EQ(truth.places_reach(), 20U);
+  for (std::uint64_t query = 0; query < 30; ++query) {
+    for (std::uint64_t match = 0; match < 30; ++match) {
+      const bool before = match < query && (query - match) % 10 == 0;
+      EXPECT_EQ(truth.right(query, match, 0), before) << query << ' ' << match;
+    }
+  }
+  EXPECT_TRUE(truth.right(25, 7, 2));
+  EXPECT_FALSE(truth.right(25, 8, 2));
+  EXPECT_EQ(Truth::laps(10, 1).frames(), 0U);
+}
+
 /// The usual formula, which the program does not use.
 double haversine(double latitude_a, double longitude_a, double latitude_b, double longitude_b) {
   constexpr double degree = std::numbers::pi / 180.0;

@@ -69,6 +69,43 @@ TEST(Chart, DrawsPrecisionOverRecallTheBestFirst) {
   EXPECT_TRUE(chart.panels[0].lines[2].marks.empty());
 }
 
+TEST(Chart, DrawsHowReliableProbabilitiesAre) {
+  Report report;
+  report.results = {synthetic_result("p", "bold", "d", {}, 0.5),
+                    synthetic_result("p", "honest", "d", {}, 0.5),
+                    synthetic_result("p", "mute", "d", {}, 0.5)};
+  report.results[0].measures.reliability[9] = {12'345, 6'000, 12'000.0};
+  report.results[1].measures.reliability[0] = {10, 1, 0.5};
+  report.results[1].measures.reliability[7] = {1000, 750, 750.0};
+  report.figures = {figure(FigureKind::reliability, {"method"}),
+                    figure(FigureKind::reliability, {"descriptor"})};
+  const Chart chart = chart_of(report, 0);
+  EXPECT_TRUE(chart.diagonal);
+  EXPECT_EQ(names(chart.panels.at(0)),
+            (std::vector<std::string>{".000 honest", ".486 bold", "– mute"}));
+  const Line& honest = chart.panels[0].lines[0];
+  ASSERT_EQ(honest.points.size(), 2U) << "a tenth without answers is no point";
+  EXPECT_EQ(honest.points[0].x, 0.05);
+  EXPECT_EQ(honest.points[0].y, 0.1);
+  ASSERT_EQ(honest.marks.size(), 1U) << "ten answers say little";
+  EXPECT_EQ(honest.marks[0].y, 0.75);
+  ASSERT_EQ(honest.counts.size(), 10U);
+  EXPECT_DOUBLE_EQ(honest.counts[7].x, 0.75);
+  EXPECT_EQ(honest.counts[7].answers, 1000U);
+  EXPECT_TRUE(chart.panels[0].lines[2].points.empty());
+  const std::string svg = figure_svg(chart, "t");
+  for (const char* part : {"class=\"diagonal\"", ">1.0k</text>", ">12k</text>", ">10</text>"}) {
+    EXPECT_NE(svg.find(part), std::string::npos) << part;
+  }
+
+  const Chart pooled = chart_of(report, 1);
+  ASSERT_EQ(pooled.panels.at(0).lines.size(), 1U);
+  const Line& line = pooled.panels[0].lines[0];
+  EXPECT_EQ(line.value, ".449") << "6000.5 of 13355";
+  EXPECT_EQ(line.points.size(), 3U);
+  EXPECT_NE(pooled.note.find("counted together that differ in method"), std::string::npos);
+}
+
 TEST(Chart, DrawsAMeasureOverASetting) {
   Report report;
   for (const auto& [ds, recall] : {std::pair{"100", 0.5}, {"20", 0.25}, {"40", 0.75}}) {

@@ -168,7 +168,8 @@ TEST(Report, HasRoomForManyLinesPanelsAndLongNames) {
   }
   const std::string title(300, 'W');
   report.figures = {{title, "", FigureKind::precision_recall, "pair", {"method"}, "", "", {}},
-                    {title + " x", "", FigureKind::measure, "", {"pair"}, "ds", "seconds", {}}};
+                    {title + " x", "", FigureKind::measure, "", {"pair"}, "ds", "seconds", {}},
+                    {"Said", "", FigureKind::reliability, "pair", {"method"}, "", "", {}}};
   for (const auto& [name, text] : written(report)) {
     EXPECT_TRUE(!name.starts_with("figure-1") || has(text, "er 39</text>"));
   }

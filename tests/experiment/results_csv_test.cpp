@@ -24,17 +24,23 @@ TEST(ResultsCsv, HasARowForEachResultAndAColumnForEachSetting) {
   first.measures.area_under_curve = 1.0 / 3.0;
   first.most_distances = 4'000'000'000;
   first.candidates = 22.5;
+  first.measures.unknown = 7;
+  first.measures.accepted = 1500;
+  first.measures.accepted_precision = 1.0;
+  first.measures.accepted_recall = 0.625;
+  first.measures.reliability[9] = {4, 3, 3.8};
   Result second =
       synthetic_result("a, b", "the \"best\"", "two\nlines", {{"k", "10"}, {"ds", "40"}}, 0.0);
   second.speed_up = 5.25;
   EXPECT_EQ(results_csv({first, second}),
             "pair,method,descriptor,ds,k,places,queries,frames,descriptor_size,answered,correct,"
-            "precision,recall,recall_at_100_precision,area_under_curve,distances,most_distances,"
-            "candidates,seconds,speed_up\n"
-            "p,m,d,20,,2400,2400,2400,735,1900,1800,0.75,0.5,0.5,0.333333333,43264.5,4e+09,22.5,"
-            "12.34,nan\n"
-            "\"a, b\",\"the \"\"best\"\"\",\"two\nlines\",40,10,2400,2400,2400,735,0,0,0,0,0,0,"
-            "43264.5,0,0,12.34,5.25\n");
+            "unknown,precision,recall,recall_at_100_precision,area_under_curve,accepted,"
+            "accepted_precision,accepted_recall,expected_calibration_error,distances,"
+            "most_distances,candidates,seconds,speed_up\n"
+            "p,m,d,20,,2400,2400,2400,735,1900,1800,7,0.75,0.5,0.5,0.333333333,1500,1,0.625,0.2,"
+            "43264.5,4e+09,22.5,12.34,nan\n"
+            "\"a, b\",\"the \"\"best\"\"\",\"two\nlines\",40,10,2400,2400,2400,735,0,0,0,0,0,0,0,"
+            "nan,nan,nan,nan,43264.5,0,0,12.34,5.25\n");
 }
 
 TEST(ResultsCsv, OfNothingIsAHeader) {

@@ -115,7 +115,8 @@ TEST_F(Accuracy, NordlandWithSeqSlam) {
 /// The committed experiments, as far as the drives are there, have no fault but the one made here.
 TEST_F(Accuracy, CommittedExperimentsCanBeRun) {
   SEQLOOP_DATA_OR_SKIP(shared);
-  for (const std::string name : {"gardens_point", "nordland_ranges", "nordland_shifts"}) {
+  for (const std::string name :
+       {"confidence", "gardens_point", "nordland_ranges", "nordland_shifts"}) {
     const auto outcome = run("eval --experiment '" SEQLOOP_EXPERIMENTS "/" + name +
                              ".toml' --data '" + shared.string() + "' --out /dev/null/none");
     EXPECT_EQ(outcome.exit_code, 2);

@@ -391,6 +391,10 @@ TEST_F(BadInput, MatchListsAndTruths) {
   folder_.write("list.csv", "");
   expect_refused("eval --matches list.csv --truth none.csv", {"list.csv", "none.csv"});
   expect_refused("eval --threshold-on x", {"threshold-on", "--matches"});
+  folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n");
+  expect_refused("eval --matches list.csv --threshold-on probability", {"'probability'"});
+  expect_refused("eval --matches list.csv --unlisted unknown", {"unlisted", "--truth"});
+  expect_refused("eval --matches list.csv --truth t.csv --unlisted right", {"'right'", "t.csv"});
 }
 
 TEST_F(BadInput, Cameras) {

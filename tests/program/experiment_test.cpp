@@ -458,5 +458,86 @@ best-of = "ds"
   EXPECT_EQ(table.whole(0, table.column("frames")), 40U);
 }
 
+TEST_F(Experiments, SeveralQueryDrivesAreMatchedAsOne) {
+  write_experiment(drives + std::string(R"(
+[[pair]]
+name = "there and again"
+query = ["first", "second"]
+tolerance = 1
+[[pair]]
+name = "once"
+query = "first"
+truth = "no-revisit"
+[[pair]]
+name = "a little is known"
+query = ["first", "second"]
+truth = "t.csv"
+unlisted = "unknown"
+[[method]]
+name = "m"
+method = "seqcnnslam"
+descriptor = "gradients"
+exclude = 20
+ds = 4
+[[figure]]
+title = "Said"
+kind = "reliability"
+panel = "pair"
+)"));
+  folder_.write("t.csv", "query,reference\n50,10\n60,20\n");
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 3U);
+  const auto number = [&](std::size_t row, const char* name) {
+    return table.number(row, table.column(name));
+  };
+  EXPECT_EQ(number(0, "places"), 80.0);
+  EXPECT_EQ(number(0, "frames"), 40.0) << "the second drive's; the first shows each place once";
+  EXPECT_GT(number(0, "correct"), 20.0);
+  EXPECT_GT(number(1, "answered"), 10.0);
+  EXPECT_EQ(number(1, "correct"), 0.0);
+  EXPECT_EQ(number(2, "frames"), 2.0);
+  EXPECT_EQ(number(2, "correct"), 2.0);
+  EXPECT_EQ(number(2, "precision"), 1.0);
+  EXPECT_EQ(number(2, "unknown"), number(0, "answered") - 2.0);
+  EXPECT_TRUE(exists("out/figure-1-said.svg"));
+}
+
+TEST_F(Experiments, RefuseWhatDoesNotGoWithSeveralQueryDrives) {
+  write_experiment(drives + std::string(R"(
+[[drive]]
+name = "third"
+source = "short"
+[[pair]]
+name = "of two lengths"
+query = ["first", "third"]
+[[pair]]
+name = "localise"
+reference = ["first", "second"]
+query = "first"
+[[pair]]
+name = "which i"
+reference = "first"
+query = ["second", "third"]
+[[pair]]
+name = "listed"
+query = ["first", "second"]
+unlisted = "unknown"
+[[method]]
+name = "m"
+method = "seqcnnslam"
+descriptor = "gradients"
+threshold-on = "speed"
+ds = 2
+[[figure]]
+title = "F"
+kind = "reliable"
+)"));
+  expect_refused({"'of two lengths': frames i cannot belong together in drives of 40 and of 6",
+                  "'reference' is one drive", "pair 'which i' has several query drives",
+                  "unlisted: it goes with a truth", "'speed' is none of",
+                  "none of precision-recall, reliability"});
+}
+
 }  // namespace
 }  // namespace seqloop

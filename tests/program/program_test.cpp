@@ -364,6 +364,40 @@ TEST_F(Run, EvalMeasuresByTheBook) {
   const auto by_file = json("--truth t.csv --tolerance 0");
   EXPECT_EQ(by_file["correct"], 2);
   EXPECT_NEAR(by_file["recall"], 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(json("--truth t.csv --unlisted unknown")["answered"], 2);
+  EXPECT_EQ(json("--truth t.csv --unlisted unknown")["unknown"], 3);
+  EXPECT_EQ(json("--truth no-revisit")["correct"], 0);
+  for (const char* key :
+       {"expected_calibration_error", "accepted", "accepted_precision", "accepted_recall"}) {
+    ASSERT_TRUE(by_file.contains(key)) << key;
+    EXPECT_TRUE(by_file[key].is_null()) << "the list does not say: " << key;
+  }
+}
+
+TEST_F(Run, EvalMeasuresWhatIsAcceptedAndHowSurely) {
+  folder_.write("m.csv",
+                "query,match,score,uniqueness,probability,accepted\n0,0,0.9,0.1,1,1\n"
+                "1,7,0.1,0.2,0.75,0\n2,2,0.5,0.3,0.75,0\n3,3,0.5,0.3,0.995,1\n4,4,.7,nan,nan,0\n");
+  const auto json = nlohmann::json::parse(
+      expect_done("eval --json --matches m.csv --threshold-on probability").out);
+  EXPECT_EQ(json["accepted"], 2);
+  EXPECT_EQ(json["accepted_precision"], 1.0);
+  EXPECT_NEAR(json["accepted_recall"], 0.4, 1e-12);
+  EXPECT_NEAR(json["recall_at_100_precision"], 0.4, 1e-12);
+  EXPECT_NEAR(json["expected_calibration_error"], (0.5 + 0.005) / 4.0, 1e-12);
+  ASSERT_EQ(json["reliability"].size(), 10U);
+  EXPECT_EQ(json["reliability"][7], (nlohmann::json{{"from", 0.7},
+                                                    {"to", 0.8},
+                                                    {"count", 2},
+                                                    {"mean_probability", 0.75},
+                                                    {"share_right", 0.5}}));
+  EXPECT_TRUE(json["reliability"][0]["share_right"].is_null());
+  const std::string words = expect_done("eval --matches m.csv").out;
+  EXPECT_NE(words.find("       2 accepted\n   1.000 precision of what is accepted\n"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("   0.126 expected calibration error\n"), std::string::npos) << words;
+  EXPECT_NE(words.find("  0.7 to 0.8        2 0.750  0.500\n"), std::string::npos) << words;
 }
 
 TEST_F(Run, EvalTakesTheLinesOfARunAndSaysWhatRecallIsOver) {
@@ -373,13 +407,17 @@ TEST_F(Run, EvalTakesTheLinesOfARunAndSaysWhatRecallIsOver) {
   expect_done("match --query drive.npy --reference" + drives + "m.csv");
   expect_done("run --source drive.npy --reference" + drives + "r.jsonl");
   const std::string frames = " --frames 60 --json --matches ";
-  const auto by_match = expect_done("eval" + frames + "m.csv");
-  const auto by_run = expect_done("eval" + frames + "r.jsonl");
-  EXPECT_EQ(by_run.out, by_match.out);
-  EXPECT_EQ(nlohmann::json::parse(by_run.out)["answered"], 50);
-  EXPECT_EQ(by_run.err, "");
-  EXPECT_EQ(expect_done("eval --threshold-on score" + frames + "r.jsonl").out,
-            expect_done("eval --threshold-on score" + frames + "m.csv").out);
+  const auto measured = [&](const std::string& list, const std::string& more) {
+    auto json = nlohmann::json::parse(expect_done("eval" + more + frames + list).out);
+    // Both say it where the match list has its column.
+    for (const char* key : {"accepted", "accepted_precision", "accepted_recall"}) json.erase(key);
+    return json;
+  };
+  EXPECT_EQ(measured("r.jsonl", ""), measured("m.csv", ""));
+  EXPECT_EQ(measured("r.jsonl", "")["answered"], 50);
+  EXPECT_EQ(expect_done("eval" + frames + "r.jsonl").err, "");
+  EXPECT_EQ(measured("r.jsonl", " --threshold-on score"),
+            measured("m.csv", " --threshold-on score"));
   const auto as_far = expect_done("eval --json --matches r.jsonl");
   EXPECT_EQ(nlohmann::json::parse(as_far.out)["frames"], 55);
   EXPECT_NE(as_far.err.find("recall is over the first 55 frames only"), std::string::npos)

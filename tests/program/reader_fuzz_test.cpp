@@ -61,13 +61,15 @@ void fuzz(const std::string& good, std::uint32_t seed, Read read) {
 }
 
 TEST(ReaderFuzz, MatchLists) {
-  fuzz("query,match,score,uniqueness\n1,2,0.5,0.25\n2,3,1e-3,nan\n3,4,0.1,inf\n", 1,
-       [](const std::string& text) {
+  fuzz("query,match,uniqueness,probability,accepted\n1,2,0.25,1,1\n2,3,nan,nan,0\n3,4,inf,.5,1\n",
+       1, [](const std::string& text) {
          const auto answers =
              evaluation::parse_answers(text, "m.csv", evaluation::ThresholdOn::uniqueness);
          const auto measures = evaluation::measure(answers, evaluation::Truth::identity(10), 2, 10);
          EXPECT_LE(measures.correct, measures.answered);
          EXPECT_LE(measures.precision, 1.0);
+         EXPECT_LE(measures.accepted.value_or(0), measures.answered);
+         EXPECT_FALSE(expected_calibration_error(measures.reliability) > 1.0);
          return true;
        });
 }

@@ -66,16 +66,15 @@ std::string CsvTable::where(std::size_t row) const {
   return name_ + ":" + std::to_string(line_numbers_[row]);
 }
 
-bool CsvTable::has(std::string_view header) const noexcept {
-  return std::ranges::find(header_, header) != header_.end();
+std::optional<std::size_t> CsvTable::find(std::string_view header) const noexcept {
+  const auto found = std::ranges::find(header_, header);
+  if (found == header_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header_.begin());
 }
 
 std::size_t CsvTable::column(std::string_view header) const {
-  const auto found = std::ranges::find(header_, header);
-  if (found == header_.end()) {
-    throw SetupError({name_, "no column '" + std::string(header) + "' in its header line"});
-  }
-  return static_cast<std::size_t>(found - header_.begin());
+  if (const std::optional<std::size_t> found = find(header)) return *found;
+  throw SetupError({name_, "no column '" + std::string(header) + "' in its header line"});
 }
 
 std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
@@ -100,6 +99,12 @@ double CsvTable::number_within(std::size_t row, std::size_t column, double least
     refuse(row, column, fmt::format("a number from {} to {}", least, most));
   }
   return value;
+}
+
+bool CsvTable::flag(std::size_t row, std::size_t column) const {
+  const std::string& cell = lines_[row][column];
+  if (cell != "0" && cell != "1") refuse(row, column, "0 or 1");
+  return cell == "1";
 }
 
 void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view wanted) const {

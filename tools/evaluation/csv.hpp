@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,13 @@ class CsvTable {
   /// @return `NAME:LINE`, for messages
   [[nodiscard]] std::string where(std::size_t row) const;
 
-  /// Whether a column has this header.
-  [[nodiscard]] bool has(std::string_view header) const noexcept;
+  /// @return index of the column with this header; none where there is no such column
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view header) const noexcept;
+  [[nodiscard]] bool has(std::string_view header) const noexcept {
+    return find(header).has_value();
+  }
 
-  /// @return index of the column with this header. Throws SetupError: there is none.
+  /// The same. Throws SetupError: there is none.
   [[nodiscard]] std::size_t column(std::string_view header) const;
 
   /// Throw SetupError, with the line, for a cell that is no such number.
@@ -36,6 +40,7 @@ class CsvTable {
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;  ///< nan and inf too
   [[nodiscard]] double number_within(std::size_t row, std::size_t column, double least,
                                      double most) const;
+  [[nodiscard]] bool flag(std::size_t row, std::size_t column) const;  ///< 0 or 1
 
  private:
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view wanted) const;

@@ -2,6 +2,7 @@
 #include "evaluation/match_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,17 +18,31 @@ using Json = nlohmann::json;
 
 /// Of the column and the key.
 std::string name_of(ThresholdOn threshold_on) {
-  return threshold_on == ThresholdOn::uniqueness ? "uniqueness" : "score";
+  switch (threshold_on) {
+    case ThresholdOn::score:
+      return "score";
+    case ThresholdOn::probability:
+      return "probability";
+    case ThresholdOn::uniqueness:
+      break;
+  }
+  return "uniqueness";
 }
 
 std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) {
   const std::size_t query = table.column("query");
   const std::size_t match = table.column("match");
   const std::size_t uncertainty = table.column(swept);
+  const std::optional<std::size_t> probability = table.find("probability");
+  const std::optional<std::size_t> accepted = table.find("accepted");
   std::vector<Answer> answers;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    answers.push_back(
-        {table.whole(row, query), table.whole(row, match), table.number(row, uncertainty)});
+    Answer answer{table.whole(row, query), table.whole(row, match), table.number(row, uncertainty)};
+    if (probability && !std::isnan(table.number(row, *probability))) {
+      answer.probability = table.number_within(row, *probability, 0.0, 1.0);
+    }
+    if (accepted) answer.accepted = table.flag(row, *accepted);
+    answers.push_back(answer);
   }
   return answers;
 }
@@ -58,10 +73,23 @@ class Lines {
     const Json& match = at(answer, "match");
     const Json& uncertainty = at(answer, swept_);
     if (query.is_null() || match.is_null()) return;
-    if (!uncertainty.is_null() && !uncertainty.is_number()) refuse("'" + swept_ + "' is no number");
-    answers.push_back({whole(query, "frame"), whole(match, "match"),
-                       uncertainty.is_null() ? std::numeric_limits<double>::quiet_NaN()
-                                             : uncertainty.get<double>()});
+    Answer found{whole(query, "frame"), whole(match, "match"), number(uncertainty, swept_)};
+    if (const auto said = answer.find("probability"); said != answer.end()) {
+      found.probability = number(*said, "probability");
+      if (found.probability < 0.0 || found.probability > 1.0)
+        refuse("'probability' is not from 0 to 1");
+    }
+    if (const auto status = answer.find("status"); status != answer.end()) {
+      found.accepted = *status == "match";
+    }
+    answers.push_back(found);
+  }
+
+  /// NaN where it is null.
+  [[nodiscard]] double number(const Json& number, const std::string& key) const {
+    if (number.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (!number.is_number()) refuse("'" + key + "' is no number");
+    return number.get<double>();
   }
 
   [[nodiscard]] const Json& at(const Json& answer, const std::string& key) const {
@@ -98,6 +126,10 @@ std::vector<Answer> from_lines(std::string_view text, const std::string& name,
 
 }  // namespace
 
+double uncertainty(ThresholdOn threshold_on, double value) noexcept {
+  return threshold_on == ThresholdOn::probability ? -value : value;
+}
+
 std::vector<Answer> parse_answers(std::string_view text, const std::string& name,
                                   ThresholdOn threshold_on) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -106,7 +138,8 @@ std::vector<Answer> parse_answers(std::string_view text, const std::string& name
   std::vector<Answer> answers =
       json ? from_lines(text, name, swept) : from_table(CsvTable(text, name), swept);
   std::set<std::uint64_t> seen;
-  for (const Answer& answer : answers) {
+  for (Answer& answer : answers) {
+    answer.uncertainty = uncertainty(threshold_on, answer.uncertainty);
     if (!seen.insert(answer.query).second) {
       throw SetupError({name, "query " + std::to_string(answer.query) + " is answered twice"});
     }

@@ -3,29 +3,41 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace seqloop::evaluation {
 
-/// An answer, and the number that a precision-recall curve sweeps: smaller is more certain.
+/// An answer, and what it says of itself.
 struct Answer {
   std::uint64_t query;
   std::uint64_t match;
-  double uncertainty;  ///< NaN: the least certain of all
+  /// What a precision-recall curve sweeps: smaller is more certain, NaN the least certain of all.
+  double uncertainty;
+  /// That the match is right, 0 .. 1; NaN: not said.
+  double probability = std::numeric_limits<double>::quiet_NaN();
+  std::optional<bool> accepted = {};  ///< whether the program stands by it; none: not said
 };
 
-/// Which of a match list's numbers the curve sweeps.
-enum class ThresholdOn : std::uint8_t { uniqueness, score };
+/// Which of a match list's numbers the curve sweeps. A larger probability is more certain, a
+/// smaller uniqueness or score.
+enum class ThresholdOn : std::uint8_t { uniqueness, score, probability };
+
+/// @param value of the number that is swept
+/// @return `Answer::uncertainty`
+[[nodiscard]] double uncertainty(ThresholdOn threshold_on, double value) noexcept;
 
 /// Takes a match list apart: the CSV table of `match` or the JSON lines of `run`, which begin with
 /// a brace. Of a JSON line, the answers are the objects under `answers` where it has that key, else
 /// the line itself; one whose `frame` or `match` is null is none, and a number that is null was
-/// undefined or infinite.
+/// undefined or infinite. The columns `probability` and `accepted` may be missing, the keys
+/// `probability` and `status` likewise; an answer of status `match` is accepted.
 /// @param name the file, for messages
-/// Throws SetupError with the line: what is no number, a column or a key that is missing, a query
-/// that is answered twice.
+/// Throws SetupError with the line: what is no number, no probability, no acceptance; a column or a
+/// key that is missing; a query that is answered twice.
 [[nodiscard]] std::vector<Answer> parse_answers(std::string_view text, const std::string& name,
                                                 ThresholdOn threshold_on);
 

@@ -35,12 +35,22 @@ double area(const std::vector<CurvePoint>& curve) {
 
 Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t tolerance,
                  std::uint64_t frames) {
-  std::stable_sort(answers.begin(), answers.end(), more_certain);
   Measures measures;
+  measures.unknown =
+      std::erase_if(answers, [&](const Answer& answer) { return !truth.judges(answer.query); });
+  std::stable_sort(answers.begin(), answers.end(), more_certain);
+  std::uint64_t accepted = 0;
+  std::uint64_t accepted_correct = 0;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const Answer& answer = answers[i];
+    const bool right = truth.right(answer.query, answer.match, tolerance);
     ++measures.answered;
-    measures.correct += truth.right(answer.query, answer.match, tolerance) ? 1U : 0U;
+    measures.correct += right ? 1U : 0U;
+    if (answer.accepted.value_or(false)) {
+      ++accepted;
+      accepted_correct += right ? 1U : 0U;
+    }
+    add_answer(measures.reliability, answer.probability, right);
     if (i + 1 < answers.size() && !more_certain(answer, answers[i + 1])) continue;
     measures.curve.push_back(
         {ratio(measures.correct, frames), ratio(measures.correct, measures.answered)});
@@ -51,6 +61,12 @@ Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t 
   measures.precision = ratio(measures.correct, measures.answered);
   measures.recall = ratio(measures.correct, frames);
   measures.area_under_curve = area(measures.curve);
+  const auto says = [](const Answer& answer) { return answer.accepted.has_value(); };
+  if (std::ranges::all_of(answers, says)) {
+    measures.accepted = accepted;
+    if (accepted > 0) measures.accepted_precision = ratio(accepted_correct, accepted);
+    if (frames > 0) measures.accepted_recall = ratio(accepted_correct, frames);
+  }
   return measures;
 }
 

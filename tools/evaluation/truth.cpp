@@ -42,11 +42,23 @@ Truth Truth::identity(std::uint64_t frames) {
   return truth;
 }
 
-Truth Truth::from_csv(const CsvTable& table) {
+Truth Truth::laps(std::uint64_t frames, std::uint64_t laps) {
+  Truth truth;
+  for (std::uint64_t query = frames; query < frames * laps; ++query) {
+    std::vector<Run>& runs = truth.places_[query];
+    for (std::uint64_t place = query % frames; place < query; place += frames) {
+      runs.push_back({place, place});
+    }
+  }
+  return truth;
+}
+
+Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
   const std::size_t query = table.column("query");
   const std::size_t reference = table.column("reference");
   const bool own_tolerances = table.has("tolerance");
   Truth truth;
+  truth.unlisted_ = unlisted;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::uint64_t place = table.whole(row, reference);
     Run run{place, place};
@@ -57,7 +69,8 @@ Truth Truth::from_csv(const CsvTable& table) {
   return truth;
 }
 
-Truth Truth::from_positions(Positions reference, const Positions& query, double radius_m) {
+Truth Truth::from_positions(Positions reference, const Positions& query, double radius_m,
+                            Unlisted unlisted) {
   if (!(radius_m > 0.0 && std::isfinite(radius_m))) {
     throw SetupError(Fault{"radius", "it must be above 0 metres"});
   }
@@ -68,6 +81,7 @@ Truth Truth::from_positions(Positions reference, const Positions& query, double 
   const double most = query.on_earth ? chord(radius_m) : radius_m;
   std::ranges::sort(reference.places, {}, northing);
   Truth truth;
+  truth.unlisted_ = unlisted;
   for (const Positions::Place& here : query.places) {
     std::vector<Run> runs;
     for (const std::uint64_t frame : frames_near(reference.places, here, most)) {
@@ -77,13 +91,19 @@ Truth Truth::from_positions(Positions reference, const Positions& query, double 
         runs.push_back({frame, frame, 0});
       }
     }
-    if (!runs.empty()) truth.places_[here.frame] = std::move(runs);
+    truth.places_[here.frame] = std::move(runs);
   }
-  if (truth.places_.empty()) {
+  if (truth.frames() == 0) {
     throw SetupError({"radius", "no query frame is that near to a reference frame",
                       "widen it, or check that both drives use the same coordinates"});
   }
   return truth;
+}
+
+std::uint64_t Truth::frames() const noexcept {
+  if (identity_frames_) return *identity_frames_;
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(places_, [](const auto& listed) { return !listed.second.empty(); }));
 }
 
 std::uint64_t Truth::queries_reach() const noexcept {

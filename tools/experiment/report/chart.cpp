@@ -19,6 +19,8 @@ constexpr double axis_title_height = 22.0;  // and room under it
 constexpr double plot_bottom = 36.0;        // ticks and the name of the x axis
 constexpr double least_height = 196.0;      // of the plot
 constexpr double least_width = 150.0;
+constexpr double least_width_over_counts = 230.0;
+constexpr double counts_title_height = 16.0;
 constexpr double label_height = 15.0;
 constexpr double font = 12.0;
 constexpr double tick_font = 11.0;
@@ -31,10 +33,11 @@ struct Layout {
   double left;
   double right;
   double bottom;
-  double value;  // width of the numbers before the names
-  double name;   // width of the names
+  double value;   // width of the numbers before the names
+  double name;    // width of the names
+  double counts;  // height of the rows of counts under the plot
 
-  [[nodiscard]] double height() const { return bottom + plot_bottom; }
+  [[nodiscard]] double height() const { return bottom + plot_bottom + counts; }
 };
 
 std::string tick_text(const Axis& axis, double value) {
@@ -54,17 +57,21 @@ Layout layout_of(const Chart& chart) {
   layout.top = axis_title_height + (titles ? title_height : 0.0);
   layout.left = ticks + 8.0;
   std::size_t most = 0;
+  bool counts = false;
   for (const Panel& panel : chart.panels) {
     most = std::max(most, panel.lines.size());
     for (const Line& line : panel.lines) {
+      counts = counts || !line.counts.empty();
       layout.value = std::max(layout.value, text_width(line.value, font) + 6.0);
       layout.name = std::max(layout.name, text_width(line.name, font));
     }
   }
   const double beside = panel_width - layout.value - leader_length;
-  layout.name = std::clamp(beside - layout.left - least_width, 0.0, layout.name);
+  const double least = counts ? least_width_over_counts : least_width;
+  layout.name = std::clamp(beside - layout.left - least, 0.0, layout.name);
   layout.right = beside - layout.name;
   layout.bottom = layout.top + std::max(least_height, static_cast<double>(most) * label_height);
+  if (counts) layout.counts = counts_title_height + static_cast<double>(most) * label_height;
   return layout;
 }
 
@@ -152,6 +159,33 @@ std::string line_svg(const Line& line, const Scale& x, const Scale& y, const Lay
   return svg + "</g>\n";
 }
 
+/// `950`, `6.2k`, `12k`: at most four characters up to a million.
+std::string short_count(std::uint64_t count) {
+  if (count < 1000) return std::to_string(count);
+  const double thousands = static_cast<double>(count) / 1000.0;
+  return fmt::format("{:.{}f}k", thousands, count < 9950 ? 1 : 0);
+}
+
+/// How many answers each part of the x axis stands for, a row a line.
+std::string counts_svg(const std::vector<Line>& lines, const Scale& x, const Layout& layout,
+                       bool titles) {
+  double y = layout.bottom + plot_bottom + counts_title_height - 4.0;
+  std::string svg;
+  if (titles) svg += text_at(x.from, y, "class=\"axis-title\"", "answers in each tenth");
+  for (const Line& line : lines) {
+    y += label_height;
+    svg += fmt::format("<g class=\"c{}\">\n", line.style.colour);
+    for (const Count& count : line.counts) {
+      svg += text_at(x(count.x), y, "class=\"count\" text-anchor=\"middle\"",
+                     short_count(count.answers));
+    }
+    svg += text_at(layout.right + leader_length + layout.value, y, "class=\"name\"",
+                   shortened(line.name, font, layout.name));
+    svg += "</g>\n";
+  }
+  return svg;
+}
+
 std::string panel_content(const Chart& chart, const Panel& panel, const Layout& layout,
                           bool titles) {
   const Scale x{chart.x, layout.left, layout.right};
@@ -164,9 +198,14 @@ std::string panel_content(const Chart& chart, const Panel& panel, const Layout& 
   std::string svg =
       text_at(0.0, 13.0, "class=\"title\"", shortened(panel.title, 13.0, 0.95 * panel_width));
   svg += axes_svg(chart, x, y, titles);
+  if (chart.diagonal) {
+    svg += fmt::format("<path class=\"diagonal\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x.from,
+                       y.from, x.to, y.to);
+  }
   for (std::size_t i = 0; i < labels.size(); ++i) {
     svg += line_svg(panel.lines[i], x, y, layout, labels[i]);
   }
+  if (layout.counts > 0.0) svg += counts_svg(panel.lines, x, layout, titles);
   return svg;
 }
 

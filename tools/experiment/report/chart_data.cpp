@@ -31,6 +31,25 @@ Line curve(const Result& result) {
   return line;
 }
 
+/// Answers of all the results, counted together.
+Line reliability_line(const Chosen& results) {
+  constexpr std::uint64_t enough = 50;  // answers, for a share of them to mean something
+  evaluation::Reliability all{};
+  for (const Result* result : results) all = together(all, result->measures.reliability);
+  const double error = expected_calibration_error(all);
+  Line line{.value = shown(Unit::share, error)};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const evaluation::ReliabilityBin& bin = all[i];
+    const double middle = (static_cast<double>(i) + 0.5) / static_cast<double>(all.size());
+    line.counts.push_back({middle, bin.count});
+    if (bin.count == 0) continue;
+    line.points.push_back({bin.mean_probability(), bin.share_right()});
+    if (bin.count >= enough) line.marks.push_back(line.points.back());
+  }
+  line.good = -error;
+  return line;
+}
+
 Line measure_line(const Chosen& results, const Figure& figure) {
   Line line;
   for (const Result* result : results) {
@@ -47,9 +66,16 @@ Line measure_line(const Chosen& results, const Figure& figure) {
 /// A panel's lines of one name: one a result, or one through all of them.
 std::vector<Line> lines_of(const Chosen& results, const Figure& figure) {
   std::vector<Line> lines;
-  if (figure.kind == FigureKind::measure) lines.push_back(measure_line(results, figure));
-  if (figure.kind == FigureKind::precision_recall) {
-    for (const Result* result : results) lines.push_back(curve(*result));
+  switch (figure.kind) {
+    case FigureKind::precision_recall:
+      for (const Result* result : results) lines.push_back(curve(*result));
+      break;
+    case FigureKind::reliability:
+      lines.push_back(reliability_line(results));
+      break;
+    case FigureKind::measure:
+      lines.push_back(measure_line(results, figure));
+      break;
   }
   for (Line& line : lines) {
     if (std::isnan(line.good)) line.good = -HUGE_VAL;
@@ -119,6 +145,12 @@ Axis axis_of_values(const Column& column, const std::vector<Panel>& panels) {
 }
 
 void set_axes(Chart& chart, const Figure& figure) {
+  if (figure.kind == FigureKind::reliability) {
+    chart.x = axis_from_zero({"", "probability said", Unit::share}, 1.0);
+    chart.y = axis_from_zero({"", "share right", Unit::share}, 1.0);
+    chart.diagonal = true;
+    return;
+  }
   if (figure.kind == FigureKind::precision_recall) {
     chart.x = axis_from_zero(column_named("recall"), 1.0);
     chart.y = axis_from_zero(column_named("precision"), 1.0);
@@ -134,19 +166,42 @@ void set_axes(Chart& chart, const Figure& figure) {
   chart.y = axis_from_zero(column_named(figure.y), high);
 }
 
+const char* how_to_read(FigureKind kind) {
+  switch (kind) {
+    case FigureKind::precision_recall:
+      return "Dots and numbers: the highest recall at which no answer is wrong (R@100P).";
+    case FigureKind::reliability:
+      return "Answers by tenths of the probability that they were said with; on the grey diagonal, "
+             "as many are right as was said. Dots: tenths of 50 answers or more. Numbers before "
+             "the "
+             "names: the expected calibration error.";
+    case FigureKind::measure:
+      break;
+  }
+  return "Numbers: the value at the right end of the line.";
+}
+
+/// What a figure does with results that none of its names tells apart.
+const char* what_differs(FigureKind kind) {
+  switch (kind) {
+    case FigureKind::precision_recall:
+      return "Lines of one name differ also in";
+    case FigureKind::reliability:
+      return "Answers are counted together that differ in";
+    case FigureKind::measure:
+      break;
+  }
+  return "Points of a line differ also in";
+}
+
 std::string note_of(const Chosen& results, const Figure& figure) {
-  const bool curves = figure.kind == FigureKind::precision_recall;
-  std::string note =
-      curves ? "Dots and numbers: the highest recall at which no answer is wrong (R@100P)."
-             : "Numbers: the value at the right end of the line.";
+  const std::string note = how_to_read(figure.kind);
   Names names = figure.line;
   if (!figure.panel.empty()) names.push_back(figure.panel);
-  if (!curves) names.push_back(figure.x);
+  if (figure.kind == FigureKind::measure) names.push_back(figure.x);
   const Names more = unnamed_differences(results, names);
   if (more.empty()) return note;
-  return note + fmt::format(" {} differ also in {}.",
-                            curves ? "Lines of one name" : "Points of a line",
-                            fmt::join(more, ", "));
+  return note + fmt::format(" {} {}.", what_differs(figure.kind), fmt::join(more, ", "));
 }
 
 }  // namespace

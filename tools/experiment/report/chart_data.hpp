@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct Point {
   double y;
 };
 
+/// How many answers a part of the x axis stands for.
+struct Count {
+  double x;  ///< the middle of the part
+  std::uint64_t answers;
+};
+
 /// One line of a panel, in the units of its axes.
 struct Line {
   std::string name = {};
@@ -21,7 +28,8 @@ struct Line {
   LineStyle style = {};
   std::vector<Point> points = {};  ///< rising x; empty where there is nothing to draw
   std::vector<Point> marks = {};
-  double good = 0.0;  ///< lines are listed by it, best first
+  std::vector<Count> counts = {};  ///< written under the plot, in a row of their own
+  double good = 0.0;               ///< lines are listed by it, best first
 };
 
 struct Panel {
@@ -41,6 +49,7 @@ struct Axis {
 struct Chart {
   Axis x;
   Axis y;
+  bool diagonal = false;  ///< where y is x is a line of its own
   std::vector<Panel> panels;
   std::string nothing;  ///< why there is nothing to draw; empty where there is something
   std::string note;     ///< how to read the figure

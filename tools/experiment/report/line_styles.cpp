@@ -35,6 +35,8 @@ constexpr const char* fixed_rules = R"(
 .chart .tick, .chart .axis-title { fill: #5c6167; font-size: 11px; }
 .chart .grid { stroke: #e4e7ea; stroke-width: 1; }
 .chart .axis { stroke: #8b9197; stroke-width: 1; }
+.chart .diagonal { stroke: #a9afb5; stroke-width: 1.4; stroke-dasharray: 1 4; stroke-linecap: round; }
+.chart .count { font-size: 10px; }
 .chart .paper { fill: #ffffff; }
 .chart .curve { fill: none; stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }
 .chart .leader { fill: none; stroke-width: 0.7; opacity: 0.55; }
@@ -48,6 +50,7 @@ constexpr const char* dark_rules = R"(
 .chart .tick, .chart .axis-title { fill: #a4abb3; }
 .chart .grid { stroke: #2b3036; }
 .chart .axis { stroke: #737b84; }
+.chart .diagonal { stroke: #8b939c; }
 .chart .paper { fill: #16191d; }
 .chart .mark { stroke: #16191d; }
 )";

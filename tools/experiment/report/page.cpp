@@ -56,6 +56,9 @@ std::string summary(const Chosen& all) {
                   "area_under_curve",
                   "precision",
                   "recall",
+                  "accepted_precision",
+                  "accepted_recall",
+                  "expected_calibration_error",
                   "candidates",
                   "seconds",
                   "speed_up"};

@@ -50,6 +50,7 @@ struct Filter {
 
 enum class FigureKind : std::uint8_t {
   precision_recall,  ///< precision over recall, a line a result
+  reliability,       ///< share right over the probability said, a line a group of results
   measure            ///< one measure over a setting, a line a group of results
 };
 

@@ -53,7 +53,7 @@ void DescribedDrives::check(Faults& faults) {
   std::set<Wanted> wanted;
   for (const RunSpec& run : experiment_.runs) {
     const PairSpec& pair = experiment_.pairs[run.pair];
-    wanted.insert({pair.query, run.descriptor});
+    for (const std::string& query : pair.queries) wanted.insert({query, run.descriptor});
     if (!pair.reference.empty()) wanted.insert({pair.reference, run.descriptor});
   }
   std::vector<std::string> made_from(experiment_.descriptors.size());

@@ -38,12 +38,13 @@ struct DescriptorSpec {
   std::vector<Setting> swept;         ///< those that tell it from its siblings
 };
 
-/// `[[pair]]`: two drives along one route, or one that comes back to where it was.
+/// `[[pair]]`: two drives along one route, or one that comes back to where it was. Several query
+/// drives are matched as one, which goes on from the end of one to the start of the next.
 struct PairSpec {
   std::string name;
   std::string where;
   std::string reference;  ///< name of a drive; empty: loops are closed within the query
-  std::string query;
+  std::vector<std::string> queries;
   program::TruthSettings truth;
   std::optional<LeaveOutRule> leave_out;
   std::vector<Setting> settings;  ///< as written
@@ -54,6 +55,7 @@ struct RunSpec {
   std::string method;
   std::size_t descriptor;  ///< index of it
   std::size_t pair;        ///< likewise
+  evaluation::ThresholdOn threshold_on;
   MatcherConfig config;
   std::vector<Setting> settings;  ///< as written, those of the descriptor that are swept included
 };
@@ -69,6 +71,7 @@ struct Experiment {
   std::string title;
   std::string text;
   bool timed = false;  ///< match one run at a time, so that none slows another down
+  /// Of methods that do not say themselves.
   evaluation::ThresholdOn threshold_on = evaluation::ThresholdOn::uniqueness;
   std::vector<DriveSpec> drives;
   std::vector<DescriptorSpec> descriptors;

@@ -162,13 +162,10 @@ class Reader {
     pair.where = section.where();
     pair.name = section.name("pair", pairs_);
     pairs_.push_back(pair.name);
-    const auto drive = [&](const char* key) {
-      const Names found = section.references(key, "drive", names_of(experiment_.drives));
-      if (found.size() > 1) section.refuse(fmt::format("'{}' is one drive", key));
-      return found.empty() ? std::string() : found.front();
-    };
-    pair.reference = drive("reference");
-    pair.query = drive("query");
+    const Names reference = section.references("reference", "drive", names_of(experiment_.drives));
+    if (reference.size() > 1) section.refuse("'reference' is one drive");
+    if (!reference.empty()) pair.reference = reference.front();
+    pair.queries = section.references("query", "drive", names_of(experiment_.drives));
     if (!section.has("query")) section.refuse("pair '" + pair.name + "' has no query drive");
     LeaveOutRule rule{.dark_below = 0.0, .standing_below = 0.0};
     OptionTable options;
@@ -176,22 +173,29 @@ class Reader {
     options.number("dark-below", rule.dark_below, "");
     options.number("standing-below", rule.standing_below, "");
     pair.settings = section.set_all(options, {"name", "reference", "query"});
-    if (!by_identity(pair.truth)) find(pair.truth.file);
+    if (by_file(pair.truth)) find(pair.truth.file);
     find(pair.truth.reference_positions);
     find(pair.truth.query_positions);
     if (rule.dark_below > 0.0 || rule.standing_below > 0.0) pair.leave_out = rule;
     check_pair(section, pair, rule);
     // What refers to drives that are not there cannot be looked at any further.
-    if (pair.query.empty() || (section.has("reference") && pair.reference.empty())) return;
+    if (pair.queries.empty() || (section.has("reference") && pair.reference.empty())) return;
     experiment_.pairs.push_back(std::move(pair));
   }
 
   static void check_pair(const Section& section, const PairSpec& pair, const LeaveOutRule& rule) {
     const bool closing = !section.has("reference");
-    if (closing && by_identity(pair.truth)) {
+    if (closing && by_identity(pair.truth) && pair.queries.size() < 2) {
       section.refuse(
           "pair '" + pair.name + "' closes loops within a drive, where no frame is its own truth",
-          "give a truth = \"FILE.csv\", or a reference drive");
+          "give a truth = \"FILE.csv\" or \"no-revisit\", a second query drive, or a reference "
+          "drive");
+    }
+    if (!closing && by_identity(pair.truth) && pair.queries.size() > 1) {
+      section.refuse("pair '" + pair.name +
+                         "' has several query drives, whose frames i are not those "
+                         "of the reference",
+                     "give a truth = \"FILE.csv\", or a pair for each");
     }
     if (closing && !pair.truth.reference_positions.empty()) {
       section.refuse(
@@ -203,7 +207,8 @@ class Reader {
         section.refuse("dark-below and standing-below are grey levels, 0 to 255");
       }
     }
-    if (pair.leave_out && (closing || !by_identity(pair.truth))) {
+    const bool two_drives = !closing && pair.queries.size() == 1;
+    if (pair.leave_out && (!two_drives || !by_identity(pair.truth))) {
       section.refuse("pair '" + pair.name +
                          "' leaves frames out, which wants two drives whose frames i belong "
                          "together",
@@ -224,10 +229,12 @@ class Reader {
       section.check_setting(setting);
       experiment_.best_of.push_back({name, setting});
     }
+    const evaluation::ThresholdOn threshold_on = read_threshold(section);
     program::MatcherSettings none;
     OptionTable known;
     add_matcher_options(known, none);
-    const auto written = section.written(known, {"name", "descriptor", "pair", "best-of"});
+    const auto written =
+        section.written(known, {"name", "descriptor", "pair", "best-of", "threshold-on"});
     for (const std::string& setting : best_of) {
       if (!is_swept(setting, written, descriptors)) {
         section.refuse("'best-of': '" + setting + "' has one value only", "give it a list");
@@ -240,11 +247,24 @@ class Reader {
       OptionTable options;
       add_matcher_options(options, matcher);
       section.set(options, written, chosen);
-      for (const Fault& fault : add_runs(name, matcher, chosen, descriptors, pairs)) {
+      for (const Fault& fault : add_runs(name, matcher, chosen, descriptors, pairs, threshold_on)) {
         const std::string why = fmt::format("method '{}': {}: {}", name, fault.what, fault.why);
         if (told.insert(why).second) section.refuse(why, fault.remedy);
       }
     }
+  }
+
+  /// The method's own `threshold-on`, or the experiment's.
+  [[nodiscard]] evaluation::ThresholdOn read_threshold(const Section& section) const {
+    const Names own = section.names("threshold-on");
+    if (own.size() > 1) section.refuse("'threshold-on' is one column");
+    if (own.empty()) return experiment_.threshold_on;
+    try {
+      return program::parse_threshold(own.front());
+    } catch (const std::invalid_argument& why) {
+      section.refuse(std::string("threshold-on: ") + why.what());
+    }
+    return experiment_.threshold_on;
   }
 
   [[nodiscard]] bool is_swept(const std::string& setting,
@@ -263,8 +283,8 @@ class Reader {
 
   /// One run for each of the pairs and each of the descriptors.
   Faults add_runs(const std::string& method, const program::MatcherSettings& matcher,
-                  const std::vector<Setting>& chosen, const Names& descriptors,
-                  const Names& pairs) {
+                  const std::vector<Setting>& chosen, const Names& descriptors, const Names& pairs,
+                  evaluation::ThresholdOn threshold_on) {
     Faults faults;
     static_cast<void>(
         resolve(matcher, Use::localise, faults));  // without any pair or descriptor, too
@@ -279,7 +299,7 @@ class Reader {
         const PairSpec& pair = experiment_.pairs[p];
         if (!has(pairs, pair.name)) continue;
         const Use use = pair.reference.empty() ? Use::close_loops : Use::localise;
-        RunSpec run{method, d, p, resolve(matcher, use, faults), chosen};
+        RunSpec run{method, d, p, threshold_on, resolve(matcher, use, faults), chosen};
         for (Setting& setting : run.settings) {
           // In the report a method is what the file calls it.
           if (setting.name == "method") setting.name = "algorithm";

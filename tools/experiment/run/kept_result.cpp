@@ -24,6 +24,10 @@ void for_each_number(AResult& result, Each each) {
   each("recall", result.measures.recall);
   each("recall_at_100_precision", result.measures.recall_at_100_precision);
   each("area_under_curve", result.measures.area_under_curve);
+  each("unknown", result.measures.unknown);
+  each("accepted", result.measures.accepted);
+  each("accepted_precision", result.measures.accepted_precision);
+  each("accepted_recall", result.measures.accepted_recall);
   each("distances", result.distances);
   each("most_distances", result.most_distances);
   each("candidates", result.candidates);
@@ -33,6 +37,29 @@ void for_each_number(AResult& result, Each each) {
   each("matrix", result.matrix);
 }
 
+// JSON has null where a number is not defined.
+
+template <class Number>
+Json written(const Number& number) {
+  return number;
+}
+template <class Number>
+Json written(const std::optional<Number>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
+
+template <class Number>
+void read(const Json& json, Number& number) {
+  json.get_to(number);
+}
+void read(const Json& json, double& number) {
+  number = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+template <class Number>
+void read(const Json& json, std::optional<Number>& number) {
+  number = json.is_null() ? std::nullopt : std::optional(json.get<Number>());
+}
+
 }  // namespace
 
 void keep_result(const Result& result, const std::filesystem::path& file) {
@@ -40,10 +67,14 @@ void keep_result(const Result& result, const std::filesystem::path& file) {
   for (const Setting& setting : result.settings) {
     json["settings"].push_back({setting.name, setting.value});
   }
-  for_each_number(result, [&](const char* name, const auto& number) { json[name] = number; });
+  for_each_number(result,
+                  [&](const char* name, const auto& number) { json[name] = written(number); });
   json["curve"] = Json::array();
   for (const evaluation::CurvePoint& point : result.measures.curve) {
     json["curve"].push_back({point.recall, point.precision});
+  }
+  for (const evaluation::ReliabilityBin& bin : result.measures.reliability) {
+    json["reliability"].push_back({bin.count, bin.right, bin.probability_sum});
   }
   files::OutputFile out(file);
   out.write(json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
@@ -67,9 +98,14 @@ std::optional<Result> parse_result(std::string_view text) {
         result.settings.push_back({setting.at(0), setting.at(1)});
       }
     }
-    for_each_number(result, [&](const char* name, auto& number) { json.at(name).get_to(number); });
+    for_each_number(result, [&](const char* name, auto& number) { read(json.at(name), number); });
     for (const Json& point : json.at("curve")) {
       result.measures.curve.push_back({point.at(0), point.at(1)});
+    }
+    const Json& reliability = json.at("reliability");
+    for (std::size_t bin = 0; bin < result.measures.reliability.size(); ++bin) {
+      const Json& kept = reliability.at(bin);
+      result.measures.reliability[bin] = {kept.at(0), kept.at(1), kept.at(2)};
     }
     return result;
   } catch (const Json::exception&) {

@@ -2,6 +2,7 @@
 #include "experiment/run/matched_run.hpp"
 
 #include <chrono>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,24 @@
 #include "seqloop/files/descriptor_source.hpp"
 
 namespace seqloop::experiment {
+namespace {
+
+// The detector does not say yet how probable an answer is.
+constexpr double probability = std::numeric_limits<double>::quiet_NaN();
+
+double swept(evaluation::ThresholdOn threshold_on, const Match& match) {
+  switch (threshold_on) {
+    case evaluation::ThresholdOn::score:
+      return static_cast<double>(match.score);
+    case evaluation::ThresholdOn::probability:
+      return probability;
+    case evaluation::ThresholdOn::uniqueness:
+      break;
+  }
+  return static_cast<double>(match.uniqueness);
+}
+
+}  // namespace
 
 MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
                       evaluation::ThresholdOn threshold_on, bool with_matrix) {
@@ -27,7 +46,6 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
   std::vector<float> column;
   MatchedRun run;
   std::uint64_t searched = 0;
-  const bool by_score = threshold_on == evaluation::ThresholdOn::score;
   for (std::size_t row = 0; row < query.rows; ++row) {
     program::stop_if_interrupted();
     const auto begin = std::chrono::steady_clock::now();
@@ -44,9 +62,12 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
     if (report.work.candidates > 0) ++searched;
     run.candidates += static_cast<double>(report.work.candidates);
     if (!report.match) continue;
-    const Match& match = *report.match;
-    run.answers.push_back({*report.frame, match.place,
-                           static_cast<double>(by_score ? match.score : match.uniqueness)});
+    run.answers.push_back(
+        {.query = *report.frame,
+         .match = report.match->place,
+         .uncertainty = uncertainty(threshold_on, swept(threshold_on, *report.match)),
+         .probability = probability,
+         .accepted = report.gate == Gate::match});
   }
   run.distances /= static_cast<double>(query.rows);
   if (searched > 0) run.candidates /= static_cast<double>(searched);

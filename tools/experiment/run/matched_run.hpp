@@ -15,6 +15,7 @@ namespace seqloop::experiment {
 struct DescribedPair {
   std::optional<files::Matrix> reference;  ///< none: loops are closed within the query
   files::Matrix query;
+  std::vector<std::uint64_t> query_lengths;  ///< rows of it that each query drive has
 };
 
 /// What one pass of the detector over a drive gave.

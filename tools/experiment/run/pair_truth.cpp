@@ -3,19 +3,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace seqloop::experiment {
 namespace {
 
 evaluation::Truth identity(const PairSpec& pair, const PairLengths& lengths, Faults& faults) {
-  const std::uint64_t query = lengths.query.value_or(0);
-  if (lengths.reference && lengths.query && *lengths.reference != query) {
+  std::vector<std::optional<std::uint64_t>> drives = lengths.queries;
+  if (!pair.reference.empty()) drives.push_back(lengths.reference);
+  const auto known = [](const auto& length) { return length.has_value(); };
+  if (!std::ranges::all_of(drives, known)) return {};
+  const auto [shortest, longest] = std::ranges::minmax(drives);
+  if (shortest != longest) {
     faults.push_back({pair.where,
                       fmt::format("pair '{}': frames i cannot belong together in drives of {} and "
                                   "of {} frames",
-                                  pair.name, *lengths.reference, query),
+                                  pair.name, *longest, *shortest),
                       "give a truth = \"FILE.csv\""});
   }
-  return evaluation::Truth::identity(query);
+  return pair.reference.empty() ? evaluation::Truth::laps(*shortest, drives.size())
+                                : evaluation::Truth::identity(*shortest);
 }
 
 void check_reach(const PairSpec& pair, const char* drive, std::uint64_t reach,
@@ -29,16 +36,29 @@ void check_reach(const PairSpec& pair, const char* drive, std::uint64_t reach,
 
 }  // namespace
 
+std::optional<std::uint64_t> PairLengths::query() const {
+  std::uint64_t sum = 0;
+  for (const std::optional<std::uint64_t>& length : queries) {
+    if (!length) return std::nullopt;
+    sum += *length;
+  }
+  return sum;
+}
+
+std::optional<std::uint64_t> PairLengths::map(const PairSpec& pair) const {
+  return pair.reference.empty() ? query() : reference;
+}
+
 evaluation::Truth pair_truth(const PairSpec& pair, const PairLengths& lengths, Faults& faults) {
-  if (by_identity(pair.truth)) return identity(pair, lengths, faults);
   Faults found;
   evaluation::Truth truth = read_truth(pair.truth, found);
   for (const Fault& fault : found) {
     faults.push_back({pair.where, fault.what + ": " + fault.why, fault.remedy});
   }
   if (!found.empty()) return truth;
-  check_reach(pair, "query", truth.queries_reach(), lengths.query, faults);
-  check_reach(pair, "reference", truth.places_reach(), lengths.reference, faults);
+  if (by_identity(pair.truth)) return identity(pair, lengths, faults);
+  check_reach(pair, "query", truth.queries_reach(), lengths.query(), faults);
+  check_reach(pair, "reference", truth.places_reach(), lengths.map(pair), faults);
   return truth;
 }
 

@@ -70,10 +70,7 @@ class Runner {
     drives_.check(faults);
     for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
       const PairSpec& spec = experiment_.pairs[pair];
-      check_lengths(pair,
-                    {drives_.length(spec.reference.empty() ? spec.query : spec.reference),
-                     drives_.length(spec.query)},
-                    faults);
+      check_lengths(pair, lengths_of(spec), faults);
     }
   }
 
@@ -135,15 +132,27 @@ class Runner {
     }
   }
 
+  /// As far as the drives know beforehand.
+  [[nodiscard]] PairLengths lengths_of(const PairSpec& pair) const {
+    PairLengths lengths;
+    if (!pair.reference.empty()) lengths.reference = drives_.length(pair.reference);
+    for (const std::string& query : pair.queries) {
+      lengths.queries.push_back(drives_.length(query));
+    }
+    return lengths;
+  }
+
   void check_lengths(std::size_t pair, const PairLengths& lengths, Faults& faults) const {
     const PairSpec& spec = experiment_.pairs[pair];
     static_cast<void>(pair_truth(spec, lengths, faults));
-    if (!lengths.query || !lengths.reference) return;
+    const std::optional<std::uint64_t> queries = lengths.query();
+    const std::optional<std::uint64_t> places = lengths.map(spec);
+    if (!queries || !places) return;
     std::set<std::string> told;
     for (const RunSpec& run : experiment_.runs) {
       if (run.pair != pair) continue;
       Faults found;
-      program::check_length(found, run.config, *lengths.query, *lengths.reference);
+      program::check_length(found, run.config, *queries, *places);
       for (const Fault& fault : found) {
         const std::string why = fmt::format("pair '{}', method '{}': {}: {}", spec.name, run.method,
                                             fault.what, fault.why);
@@ -157,16 +166,16 @@ class Runner {
     for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
       const PairSpec& pair = experiment_.pairs[i];
       if (!pair.leave_out) continue;
-      const auto frames = static_cast<double>(drives_.length(pair.query).value_or(1000));
-      jobs.push_back({"dark and standing frames of " + pair.name, frames, [this, &pair, i] {
-                        kept_frames_[i] = leave_out(*drives_.open(pair.reference),
-                                                    *drives_.open(pair.query), *pair.leave_out);
-                        if (kept_frames_[i]->frames.empty()) {
-                          throw SetupError({pair.where,
-                                            "pair '" + pair.name + "' has no frame left",
-                                            "lower dark-below or standing-below"});
-                        }
-                      }});
+      const auto frames = static_cast<double>(drives_.length(pair.queries.front()).value_or(1000));
+      jobs.push_back(
+          {"dark and standing frames of " + pair.name, frames, [this, &pair, i] {
+             kept_frames_[i] = leave_out(*drives_.open(pair.reference),
+                                         *drives_.open(pair.queries.front()), *pair.leave_out);
+             if (kept_frames_[i]->frames.empty()) {
+               throw SetupError({pair.where, "pair '" + pair.name + "' has no frame left",
+                                 "lower dark-below or standing-below"});
+             }
+           }});
     }
     return jobs;
   }
@@ -184,10 +193,12 @@ class Runner {
       }
       // What a run costs is mostly what it reads for each place: all of them, or ranges of them.
       const double share = run.config.candidates == Candidates::all ? 1.0 : 0.1;
-      const auto bytes =
-          static_cast<double>(std::filesystem::file_size(drives_.file(pair.query, run.descriptor)));
-      const auto& map = pair.reference.empty() ? pair.query : pair.reference;
-      const auto places = static_cast<double>(drives_.length(map).value_or(1000));
+      double bytes = 0.0;
+      for (const std::string& query : pair.queries) {
+        bytes +=
+            static_cast<double>(std::filesystem::file_size(drives_.file(query, run.descriptor)));
+      }
+      const auto places = static_cast<double>(lengths_of(pair).map(pair).value_or(1000));
       jobs.push_back({name, share * bytes * places, [this, &run] { match(run); }});
     }
     return jobs;
@@ -196,12 +207,14 @@ class Runner {
   void match(const RunSpec& run) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
     DescribedPair described = read(run);
-    const std::uint64_t places =
-        described.reference ? described.reference->rows : described.query.rows;
     const std::uint64_t queries = described.query.rows;
+    const std::uint64_t places = described.reference ? described.reference->rows : queries;
+    PairLengths lengths;
+    if (described.reference) lengths.reference = places;
+    lengths.queries.assign(described.query_lengths.begin(), described.query_lengths.end());
     Faults faults;
-    check_lengths(run.pair, {places, queries}, faults);
-    const evaluation::Truth truth = pair_truth(pair, {places, queries}, faults);
+    check_lengths(run.pair, lengths, faults);
+    const evaluation::Truth truth = pair_truth(pair, lengths, faults);
     program::refuse(std::move(faults));
 
     Result result{pair.name,
@@ -212,8 +225,8 @@ class Runner {
                   queries,
                   truth.frames(),
                   described.query.columns};
-    const MatchedRun matched = match_pair(run.config, std::move(described),
-                                          experiment_.threshold_on, shown_as_matrix(run));
+    const MatchedRun matched =
+        match_pair(run.config, std::move(described), run.threshold_on, shown_as_matrix(run));
     result.measures = measure(matched.answers, truth, pair.truth.tolerance, truth.frames());
     result.distances = matched.distances;
     result.most_distances = matched.most_distances;
@@ -249,7 +262,17 @@ class Runner {
     };
     DescribedPair described;
     if (!pair.reference.empty()) described.reference = read_drive(pair.reference);
-    described.query = read_drive(pair.query);
+    for (const std::string& drive : pair.queries) {
+      files::Matrix rows = read_drive(drive);
+      described.query_lengths.push_back(rows.rows);
+      if (described.query.rows == 0) {
+        described.query = std::move(rows);
+        continue;
+      }
+      files::Matrix& all = described.query;
+      all.rows += rows.rows;
+      all.values.insert(all.values.end(), rows.values.begin(), rows.values.end());
+    }
     return described;
   }
 
@@ -261,13 +284,15 @@ class Runner {
                                   run.method,
                                   pair.name,
                                   text_of(pair.settings),
-                                  drives_.file(pair.query, run.descriptor).filename().string(),
                                   experiment_.timed ? "timed" : "",
-                                  std::to_string(static_cast<int>(experiment_.threshold_on))};
+                                  std::to_string(static_cast<int>(run.threshold_on))};
+    for (const std::string& query : pair.queries) {
+      from.push_back(drives_.file(query, run.descriptor).filename().string());
+    }
     if (!pair.reference.empty()) {
       from.push_back(drives_.file(pair.reference, run.descriptor).filename().string());
     }
-    if (!pair.truth.file.empty() && !by_identity(pair.truth)) {
+    if (by_file(pair.truth)) {
       from.push_back(state_of(pair.truth.file));
     }
     for (const auto& path : {pair.truth.reference_positions, pair.truth.query_positions}) {

@@ -36,8 +36,10 @@ Figure read_figure(const Section& section) {
   if (kind == "measure") {
     figure.kind = FigureKind::measure;
     if (figure.x.empty() || figure.y.empty()) section.refuse("a figure of a measure needs x and y");
+  } else if (kind == "reliability") {
+    figure.kind = FigureKind::reliability;
   } else if (kind != "precision-recall") {
-    section.refuse("'" + kind + "' is neither precision-recall nor measure");
+    section.refuse("'" + kind + "' is none of precision-recall, reliability, measure");
   }
   if (!figure.y.empty()) check_column(section, figure.y);
   if (!figure.panel.empty()) section.check_setting(figure.panel);

@@ -17,6 +17,16 @@ bool by_positions(const TruthSettings& settings) {
   return !settings.reference_positions.empty() || !settings.query_positions.empty();
 }
 
+evaluation::Unlisted unlisted(const TruthSettings& settings) {
+  return settings.unlisted.value_or(evaluation::Unlisted::wrong);
+}
+
+evaluation::Unlisted parse_unlisted(std::string_view text) {
+  if (text == "wrong") return evaluation::Unlisted::wrong;
+  if (text == "unknown") return evaluation::Unlisted::unknown;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither wrong nor unknown");
+}
+
 evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) {
   std::optional<evaluation::Positions> reference;
   std::optional<evaluation::Positions> query;
@@ -37,7 +47,8 @@ evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) 
   const double radius_m = settings.radius_m.value_or(default_radius_m);
   if (reference && query) {
     collect(faults, [&] {
-      truth = evaluation::Truth::from_positions(std::move(*reference), *query, radius_m);
+      truth = evaluation::Truth::from_positions(std::move(*reference), *query, radius_m,
+                                                unlisted(settings));
     });
   } else if (!(radius_m > 0.0)) {
     faults.push_back({"radius", "it must be above 0 metres"});
@@ -49,8 +60,8 @@ evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) 
 
 void add_truth_options(OptionTable& options, TruthSettings& settings) {
   options.path("truth", Access::reads, settings.file,
-               "identity, or a CSV file query,reference and, where a row has its own, tolerance "
-               "[identity]");
+               "identity, no-revisit (every answer is wrong), or a CSV file query,reference and, "
+               "where a row has its own, tolerance [identity]");
   options.count("tolerance", settings.tolerance,
                 "frames by which a match may be off; not with positions [2]");
   options.path("reference-positions", Access::reads, settings.reference_positions,
@@ -60,10 +71,18 @@ void add_truth_options(OptionTable& options, TruthSettings& settings) {
                "likewise, of the queries");
   options.add({"radius", ValueKind::number, "metres by which a match may be off [25]",
                [&settings](std::string_view value) { settings.radius_m = parse_number(value); }});
+  options.add(
+      {"unlisted", ValueKind::text,
+       "answers to frames that the truth does not list are wrong or unknown (not counted) [wrong]",
+       [&settings](std::string_view value) { settings.unlisted = parse_unlisted(value); }});
 }
 
 bool by_identity(const TruthSettings& settings) {
   return settings.file == "identity" || (settings.file.empty() && !by_positions(settings));
+}
+
+bool by_file(const TruthSettings& settings) {
+  return !settings.file.empty() && settings.file != "identity" && settings.file != "no-revisit";
 }
 
 evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
@@ -74,10 +93,13 @@ evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
     faults.push_back({"radius", "it goes with positions, and none are given",
                       "--reference-positions R.csv --query-positions Q.csv"});
   }
-  if (!settings.file.empty() && !by_identity(settings)) {
+  if (by_file(settings)) {
     collect(faults, [&] {
-      truth = evaluation::Truth::from_csv(evaluation::CsvTable::read(settings.file));
+      truth = evaluation::Truth::from_csv(evaluation::CsvTable::read(settings.file),
+                                          unlisted(settings));
     });
+  } else if (settings.unlisted && !by_positions(settings)) {
+    faults.push_back({"unlisted", "it goes with a truth that lists frames", "--truth T.csv"});
   }
   return truth;
 }
@@ -85,7 +107,9 @@ evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
 evaluation::ThresholdOn parse_threshold(std::string_view text) {
   if (text == "uniqueness") return evaluation::ThresholdOn::uniqueness;
   if (text == "score") return evaluation::ThresholdOn::score;
-  throw std::invalid_argument("'" + std::string(text) + "' is neither uniqueness nor score");
+  if (text == "probability") return evaluation::ThresholdOn::probability;
+  throw std::invalid_argument("'" + std::string(text) +
+                              "' is none of uniqueness, score, probability");
 }
 
 std::string how_near(const TruthSettings& settings) {

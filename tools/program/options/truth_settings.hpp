@@ -14,11 +14,13 @@ namespace seqloop::program {
 
 /// Where the truth about a drive comes from.
 struct TruthSettings {
-  std::filesystem::path file;  ///< or `identity`; empty: positions where given, else identity
-  std::size_t tolerance = 2;   ///< frames; not with positions
+  /// Or `identity`, or `no-revisit`; empty: positions where given, else identity.
+  std::filesystem::path file;
+  std::size_t tolerance = 2;  ///< frames; not with positions
   std::filesystem::path reference_positions;
   std::filesystem::path query_positions;
   std::optional<double> radius_m;
+  std::optional<evaluation::Unlisted> unlisted;  ///< wrong, when nobody says
 };
 
 /// @param settings lives as long as the table
@@ -26,6 +28,9 @@ void add_truth_options(OptionTable& options, TruthSettings& settings);
 
 /// Whether frame i of the query shows place i.
 [[nodiscard]] bool by_identity(const TruthSettings& settings);
+
+/// Whether there is a file that the truth is read from, at `file`.
+[[nodiscard]] bool by_file(const TruthSettings& settings);
 
 /// The truth, unless it is identity, for which somebody has to say how long it is. Adds faults.
 [[nodiscard]] evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults);

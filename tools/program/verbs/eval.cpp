@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -39,6 +40,76 @@ std::uint64_t identity_frames(const EvalSettings& settings,
   return frames;
 }
 
+nlohmann::ordered_json as_json(const evaluation::Reliability& reliability) {
+  auto bins = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < reliability.size(); ++i) {
+    const auto edge = [&](std::size_t at) {
+      return static_cast<double>(at) / static_cast<double>(reliability.size());
+    };
+    bins.push_back({{"from", edge(i)},
+                    {"to", edge(i + 1)},
+                    {"count", reliability[i].count},
+                    {"mean_probability", reliability[i].mean_probability()},
+                    {"share_right", reliability[i].share_right()}});
+  }
+  return bins;
+}
+
+/// What is not defined is NaN, which JSON writes as null.
+nlohmann::ordered_json as_json(const evaluation::Measures& measures, std::uint64_t frames) {
+  nlohmann::ordered_json json{
+      {"frames", frames},
+      {"answered", measures.answered},
+      {"correct", measures.correct},
+      {"unknown", measures.unknown},
+      {"precision", measures.precision},
+      {"recall", measures.recall},
+      {"recall_at_100_precision", measures.recall_at_100_precision},
+      {"area_under_curve", measures.area_under_curve},
+      {"accepted", nullptr},
+      {"accepted_precision", measures.accepted_precision},
+      {"accepted_recall", measures.accepted_recall},
+      {"expected_calibration_error", expected_calibration_error(measures.reliability)},
+      {"reliability", as_json(measures.reliability)},
+  };
+  if (measures.accepted) json["accepted"] = *measures.accepted;
+  return json;
+}
+
+/// A line of a share; `–` where it is not defined.
+void print_share(double share, std::string_view name) {
+  fmt::print("{:>8} {}\n", std::isnan(share) ? "–" : fmt::format("{:.3f}", share), name);
+}
+
+void print_words(const evaluation::Measures& measures, std::uint64_t frames,
+                 const std::string& near) {
+  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
+             measures.answered, measures.correct, near);
+  if (measures.unknown > 0) {
+    fmt::print("{:>8} answers more are to frames that the truth does not list\n", measures.unknown);
+  }
+  print_share(measures.precision, "precision");
+  print_share(measures.recall, "recall");
+  print_share(measures.recall_at_100_precision, "recall at 100 % precision");
+  print_share(measures.area_under_curve, "area under the curve");
+  if (measures.accepted) {
+    fmt::print("{:>8} accepted\n", *measures.accepted);
+    print_share(measures.accepted_precision, "precision of what is accepted");
+    print_share(measures.accepted_recall, "recall of what is accepted");
+  }
+  const double error = expected_calibration_error(measures.reliability);
+  if (std::isnan(error)) return;
+  print_share(error, "expected calibration error");
+  fmt::print("\n  said        answers  mean  right\n");
+  for (std::size_t i = 0; i < measures.reliability.size(); ++i) {
+    const evaluation::ReliabilityBin& bin = measures.reliability[i];
+    if (bin.count == 0) continue;
+    fmt::print("  {:.1f} to {:.1f} {:>8} {:.3f}  {:.3f}\n", static_cast<double>(i) / 10.0,
+               static_cast<double>(i + 1) / 10.0, bin.count, bin.mean_probability(),
+               bin.share_right());
+  }
+}
+
 void eval_matches(const EvalSettings& settings, Faults faults) {
   std::vector<evaluation::Answer> answers;
   if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
@@ -67,23 +138,10 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
   }
   const evaluation::Measures measures = measure(answers, truth, settings.truth.tolerance, frames);
   if (settings.json) {
-    const nlohmann::ordered_json json{
-        {"frames", frames},
-        {"answered", measures.answered},
-        {"correct", measures.correct},
-        {"precision", measures.precision},
-        {"recall", measures.recall},
-        {"recall_at_100_precision", measures.recall_at_100_precision},
-        {"area_under_curve", measures.area_under_curve},
-    };
-    fmt::print("{}\n", json.dump(2));
-    return;
+    fmt::print("{}\n", as_json(measures, frames).dump(2));
+  } else {
+    print_words(measures, frames, how_near(settings.truth));
   }
-  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
-             measures.answered, measures.correct, how_near(settings.truth));
-  fmt::print("{:>8.3f} precision\n{:>8.3f} recall\n", measures.precision, measures.recall);
-  fmt::print("{:>8.3f} recall at 100 % precision\n{:>8.3f} area under the curve\n",
-             measures.recall_at_100_precision, measures.area_under_curve);
 }
 
 /// What belongs to match lists only, and what to experiments only.
@@ -98,12 +156,12 @@ void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, 
   }
   take_interruptions();
   const TruthSettings usual;
-  const bool truth_given = !settings.truth.file.empty() ||
-                           settings.truth.tolerance != usual.tolerance ||
-                           !settings.truth.reference_positions.empty() ||
-                           !settings.truth.query_positions.empty() || settings.truth.radius_m;
+  const bool truth_given =
+      !settings.truth.file.empty() || settings.truth.tolerance != usual.tolerance ||
+      !settings.truth.reference_positions.empty() || !settings.truth.query_positions.empty() ||
+      settings.truth.radius_m || settings.truth.unlisted;
   for (const auto& [flag, given] : {std::pair{"matches", !settings.matches.empty()},
-                                    {"truth, tolerance, positions, radius", truth_given},
+                                    {"truth, tolerance, positions, radius, unlisted", truth_given},
                                     {"frames", settings.frames > 0},
                                     {"threshold-on", settings.threshold_on.has_value()},
                                     {"json", settings.json}}) {
@@ -136,7 +194,8 @@ Verb eval_verb(ExperimentRunner run_experiment) {
                     "answers: the match list (CSV) of `match`, or the JSON lines of `run`");
   add_truth_options(verb.options, settings->truth);
   verb.options.add(
-      {"threshold-on", ValueKind::text, "what the curve sweeps: uniqueness or score [uniqueness]",
+      {"threshold-on", ValueKind::text,
+       "what the curve sweeps: uniqueness, score or probability [uniqueness]",
        [settings](std::string_view value) { settings->threshold_on = parse_threshold(value); }});
   verb.options.count(
       "frames", settings->frames,
