@@ -38,9 +38,9 @@ std::vector<Forms> forms(const Vectors& descriptors) {
   return {descriptors.begin(), descriptors.end()};
 }
 
-struct Line {
+struct Scored {
   double score = none;
-  Int m = 0;
+  const Line* line = nullptr;
 };
 
 class Matcher {
@@ -98,14 +98,12 @@ class Matcher {
     }
   }
 
-  Int offset(Int m, Int i) const { return line_offset(m, i, ds_); }
-
-  Line score(Int n, Int q, Int rows) const {
-    Line best;
-    for (const Int m : velocities_) {
+  Scored score(Int n, Int q, Int rows) const {
+    Scored best;
+    for (const Line& line : lines_) {
       double sum = 0.0;
       for (Int i = 0; i <= ds_; ++i) {
-        const Int row = q + offset(m, i);
+        const Int row = q + line.rows[static_cast<std::size_t>(i)];
         if (row < 0 || row >= rows) {
           sum = none;
           break;
@@ -113,7 +111,7 @@ class Matcher {
         sum += d_[static_cast<std::size_t>(row)][static_cast<std::size_t>(n - h_ + i)];
       }
       const double mean = sum * scale_;
-      if (mean < best.score) best = {mean, m};
+      if (mean < best.score) best = {mean, &line};
     }
     return best;
   }
@@ -150,37 +148,37 @@ class Matcher {
       }
     }
 
-    std::map<Int, Line> scored;
+    std::map<Int, Scored> scored;
     for (const Int q : candidates) {
-      const Line line = score(n, q, rows);
-      if (line.score < none) scored[q] = line;
+      const Scored row = score(n, q, rows);
+      if (row.score < none) scored[q] = row;
     }
     if (scored.empty()) {
       t_.clear();
       return std::nullopt;
     }
     std::vector<Int> sorted;
-    for (const auto& [q, line] : scored) sorted.push_back(q);
+    for (const auto& [q, row] : scored) sorted.push_back(q);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](Int a, Int b) { return scored[a].score < scored[b].score; });
     const Int best = sorted.front();
 
     double runner_up = none;
-    for (const auto& [q, line] : scored) {
+    for (const auto& [q, row] : scored) {
       if (2 * std::abs(q - best) > static_cast<Int>(config_.rwindow)) {
-        runner_up = std::min(runner_up, line.score);
+        runner_up = std::min(runner_up, row.score);
       }
     }
     if (runner_up == none) runner_up = last_full_runner_up_;
     if (full) last_full_runner_up_ = runner_up;
 
-    const Line line = scored[best];
+    const auto [score, line] = scored[best];
     const Answer answer{n,
                         best,
-                        line.score,
-                        runner_up == none ? std::nan("") : line.score / runner_up,
-                        static_cast<double>(line.m) / static_cast<double>(ds_),
-                        best + offset(line.m, ds_),
+                        score,
+                        runner_up == none ? std::nan("") : score / runner_up,
+                        static_cast<double>(line->m) / static_cast<double>(ds_),
+                        best + line->rows.back(),
                         static_cast<Int>(scored.size()),
                         k_};
 
@@ -208,7 +206,7 @@ class Matcher {
   std::vector<Forms> r_;
   std::vector<Forms> q_;
   const MatcherConfig& config_;
-  std::vector<Int> velocities_ = line_velocities(config_);
+  std::vector<Line> lines_ = lines(config_);
   Int ds_;
   Int h_;
   double scale_;
@@ -262,20 +260,22 @@ double unit(const MatcherConfig& config) {
   return 0.0;
 }
 
-Int line_offset(Int m, Int i, Int ds) {
-  if (ds == 0) return 0;
-  return static_cast<Int>(std::floor(static_cast<long double>(2 * m * (i - ds / 2) + ds) /
-                                     static_cast<long double>(2 * ds)));
-}
-
-std::vector<Int> line_velocities(const MatcherConfig& config) {
-  const auto ds = static_cast<double>(config.sequence_length);
-  std::vector<Int> velocities;
-  for (Int m = 0; m <= 20 * static_cast<Int>(config.sequence_length); ++m) {
+std::vector<Line> lines(const MatcherConfig& config) {
+  const auto ds = static_cast<Int>(config.sequence_length);
+  std::vector<Line> lines;
+  for (Int m = 0; m <= 20 * ds; ++m) {
     const auto v = static_cast<double>(m);
-    if (v >= config.vmin * ds - 1e-9 && v <= config.vmax * ds + 1e-9) velocities.push_back(m);
+    const auto length = static_cast<double>(ds);
+    if (v < config.vmin * length - 1e-9 || v > config.vmax * length + 1e-9) continue;
+    lines.push_back({m, {0}});
+    if (ds == 0) continue;
+    lines.back().rows.clear();
+    for (Int i = 0; i <= ds; ++i) {
+      lines.back().rows.push_back(static_cast<Int>(std::floor(
+          static_cast<long double>(2 * m * (i - ds / 2) + ds) / static_cast<long double>(2 * ds))));
+    }
   }
-  return velocities;
+  return lines;
 }
 
 std::vector<Answer> match(const Vectors& reference, const Vectors& query,

@@ -29,12 +29,15 @@ double difference(const MatcherConfig& config, const Forms& a, const Forms& b);
 /// What a difference of 1 is.
 double unit(const MatcherConfig& config);
 
-/// Rows that the line of velocity m / ds lies above its centre row at column i (src/README.md,
-/// section 3.3).
-std::int64_t line_offset(std::int64_t m, std::int64_t i, std::int64_t ds);
+/// A line of velocity m / ds, and the rows that it lies above its centre row at each column
+/// (src/README.md, section 3.3).
+struct Line {
+  std::int64_t m;
+  std::vector<std::int64_t> rows;
+};
 
-/// The integers m of all lines, slowest first (src/README.md, section 4.2).
-std::vector<std::int64_t> line_velocities(const MatcherConfig& config);
+/// All lines, slowest first (src/README.md, section 4.2).
+std::vector<Line> lines(const MatcherConfig& config);
 
 /// One answered frame as the definitions give it.
 struct Answer {

@@ -8,7 +8,7 @@ namespace seqloop::oracle {
 ShownDrive::ShownDrive(const MatcherConfig& config, const PlaceMap& map, const Vectors& reference)
     : config_(config),
       map_(map),
-      velocities_(line_velocities(config)),
+      lines_(lines(config)),
       reference_(reference.begin(), reference.end()) {}
 
 void ShownDrive::step(const std::vector<float>& descriptor) {
@@ -52,12 +52,12 @@ std::optional<ShownDrive::Scored> ShownDrive::score(std::int64_t row) const {
   const std::int64_t last = rows();
   const double scale = 1.0 / (unit(config_) * static_cast<double>(ds + 1));
   std::optional<Scored> best;
-  for (const std::int64_t m : velocities_) {
-    const std::int64_t head = row + line_offset(m, ds, ds);
-    if (row + line_offset(m, 0, ds) < 0 || head >= last) continue;
+  for (const Line& line : lines_) {
+    const std::int64_t head = row + line.rows.back();
+    if (row + line.rows.front() < 0 || head >= last) continue;
     double sum = 0.0;
     for (std::int64_t i = 0; i <= ds; ++i) {
-      sum += difference(config_, place(row + line_offset(m, i, ds)),
+      sum += difference(config_, place(row + line.rows[static_cast<std::size_t>(i)]),
                         frames_[static_cast<std::size_t>(oldest + i)]);
     }
     if (!best || sum * scale < best->score) best = Scored{sum * scale, head};

@@ -46,7 +46,7 @@ class ShownDrive {
 
   const MatcherConfig& config_;
   const PlaceMap& map_;
-  std::vector<std::int64_t> velocities_;
+  std::vector<Line> lines_;
   std::vector<Forms> reference_;
   std::vector<Forms> frames_;
   std::int64_t began_ = 0;

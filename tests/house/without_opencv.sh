@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 # What SEQLOOP_OPENCV=OFF promises: a C++ compiler and CMake are enough for the core, files and
 # cameras; and the installed core answers the same on every processor, with kernels and without.
-# Usage: without_opencv.sh SOURCE CXX
-# Also for ARM, where Debian's cross compilers and qemu-user-static are installed.
+# Usage: without_opencv.sh SOURCE CXX        for this machine, where nothing else is to be found
+#        without_opencv.sh SOURCE CXX arm    the same answers here, with kernels, as on ARM without
+# Exit code 77 where Debian's cross compilers or qemu-user-static are missing; with
+# SEQLOOP_REQUIRE_DATA set, that fails.
 set -euo pipefail
 source=$1 cxx=$2
 work=$(mktemp -d)
@@ -56,7 +58,9 @@ EOF
 answers() {
   local name=$1 emulator=$2
   shift 2
-  must cmake -G Ninja -S "$source" -B "$work/$name" -DCMAKE_BUILD_TYPE=Release -DSEQLOOP_OPENCV=OFF "$@"
+  # Every source by itself: with all that it includes.
+  must cmake -G Ninja -S "$source" -B "$work/$name" -DCMAKE_BUILD_TYPE=Release -DSEQLOOP_OPENCV=OFF \
+    -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "$@"
   must cmake --build "$work/$name"
   must cmake --install "$work/$name" --prefix "$work/$name/installed"
   local user=(cmake -G Ninja -S "$work/user" -B "$work/$name/user" -DCMAKE_BUILD_TYPE=Release "$@"
@@ -73,26 +77,30 @@ answers() {
   fi
 }
 
-answers here "" -DCMAKE_CXX_COMPILER="$cxx"
-[ "$(wc -l <"$work/here.txt")" -ge 400 ]
-
 # Nothing is to be found outside the compiler.
 nothing=(-DCMAKE_FIND_ROOT_PATH="$work/nothing")
 for mode in INCLUDE LIBRARY PACKAGE; do nothing+=(-DCMAKE_FIND_ROOT_PATH_MODE_$mode=ONLY); done
-crossed=
-for target in "aarch64 aarch64-linux-gnu-g++ qemu-aarch64-static" \
-  "armv7l arm-linux-gnueabihf-g++ qemu-arm-static"; do
-  read -r processor compiler emulator <<<"$target"
-  command -v "$compiler" "$emulator" >/dev/null || continue
+
+if [ "${3:-}" != arm ]; then
+  answers bare "" "${nothing[@]}" -DCMAKE_CXX_COMPILER="$cxx"
+  grep -q 'SEQLOOP_HIGHWAY_HEADERS.*NOTFOUND' "$work/bare/CMakeCache.txt"
+  [ "$(wc -l <"$work/bare.txt")" -ge 400 ]
+  exit
+fi
+boards=("aarch64 aarch64-linux-gnu-g++ qemu-aarch64-static" "armv7l arm-linux-gnueabihf-g++ qemu-arm-static")
+for board in "${boards[@]}"; do
+  read -r processor compiler emulator <<<"$board"
+  command -v "$compiler" "$emulator" >/dev/null && continue
+  echo "not installed: $compiler or $emulator"
+  [ -z "${SEQLOOP_REQUIRE_DATA:-}" ] || exit 1
+  exit 77
+done
+answers here "" -DCMAKE_CXX_COMPILER="$cxx"
+[ "$(wc -l <"$work/here.txt")" -ge 400 ]
+for board in "${boards[@]}"; do
+  read -r processor compiler emulator <<<"$board"
   answers "$processor" "$emulator" "${nothing[@]}" -DCMAKE_SYSTEM_NAME=Linux \
     -DCMAKE_SYSTEM_PROCESSOR="$processor" -DCMAKE_CXX_COMPILER="$compiler"
-  crossed+=" $processor"
-done
-if [ -z "$crossed" ]; then
-  answers bare "" "${nothing[@]}" -DCMAKE_CXX_COMPILER="$cxx"
-  crossed=bare
-fi
-for name in $crossed; do
-  grep -q 'SEQLOOP_HIGHWAY_HEADERS.*NOTFOUND' "$work/$name/CMakeCache.txt"
-  cmp "$work/here.txt" "$work/$name.txt"
+  grep -q 'SEQLOOP_HIGHWAY_HEADERS.*NOTFOUND' "$work/$processor/CMakeCache.txt"
+  cmp "$work/here.txt" "$work/$processor.txt"
 done

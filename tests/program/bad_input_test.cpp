@@ -358,27 +358,6 @@ TEST_F(BadInput, AbsurdFrameNumbersCostNothing) {
   expect_refused("eval --matches list.csv", {"18446744073709551615"});
 }
 
-TEST_F(BadInput, AnInterruptedRunEndsInOrder) {
-  for (const std::string signal : {"INT", "TERM", "HUP"}) {
-    // Whoever runs the tests may have signals ignored, and the program respects that. Its partial
-    // output shows that it has begun.
-    std::filesystem::remove(file("r.jsonl"));
-    folder_.write("stop.sh",
-                  "env --default-signal=INT,TERM,HUP \"$@\" &\n"
-                  "until ls .r.jsonl.partial-* >/dev/null 2>&1; do sleep 0.1; done\n"
-                  "kill -" +
-                      signal + " $!; wait $!\n");
-    const std::string command =
-        "cd '" + folder_.path().string() +
-        "' && sh stop.sh '" SEQLOOP_BINARY
-        "' run --pace live --fps 0.01 --source good.npy --exclude 20 --out r.jsonl 2>stderr.txt";
-    EXPECT_EQ(std::system(command.c_str()), 0) << signal << test::read_all(file("stderr.txt"));
-    EXPECT_NE(test::read_all(file("stderr.txt")).find("frames:"), std::string::npos) << signal;
-    EXPECT_TRUE(exists("r.jsonl"));
-    EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
-  }
-}
-
 TEST_F(BadInput, MatchListsAndTruths) {
   folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n1,2,0.5,0.5\n");
   expect_refused("eval --matches list.csv", {"twice"});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A recording played at its own rate through the real binary: ring, budget, policy, summary.
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -121,6 +122,38 @@ TEST_F(Live, AReaderThatStoppedReadingDoesNotKeepItFromStopping) {
   EXPECT_EQ(test::read_all(file("code.txt")), "1\n") << test::read_all(file("err.txt"));
   EXPECT_NE(test::read_all(file("err.txt")).find("nobody reads it"), std::string::npos);
   EXPECT_GT(json("s.json")["frames"], 10) << "the summary is there all the same";
+}
+
+TEST_F(Live, WaitsForEachFramesTime) {
+  write_drive("q.npy", 30);
+  const auto begin = std::chrono::steady_clock::now();
+  const test::Outcome outcome =
+      run("run --source q.npy --ds 5 --exclude 5 --fps 100 --pace live --out r.jsonl");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  // A lower bound only: frame 29 is due at 0.29 s however slow the machine is.
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(280));
+}
+
+TEST_F(Live, AnInterruptedRunEndsInOrder) {
+  write_drive("good.npy", 60);
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    // Whoever runs the tests may have signals ignored, and the program respects that. Its partial
+    // output shows that it has begun.
+    std::filesystem::remove(file("r.jsonl"));
+    folder_.write("stop.sh",
+                  "env --default-signal=INT,TERM,HUP \"$@\" &\n"
+                  "until ls .r.jsonl.partial-* >/dev/null 2>&1; do sleep 0.1; done\n"
+                  "kill -" +
+                      signal + " $!; wait $!\n");
+    const std::string command =
+        "cd '" + folder_.path().string() +
+        "' && sh stop.sh '" SEQLOOP_BINARY
+        "' run --pace live --fps 0.01 --source good.npy --exclude 20 --out r.jsonl 2>stderr.txt";
+    EXPECT_EQ(std::system(command.c_str()), 0) << signal << test::read_all(file("stderr.txt"));
+    EXPECT_NE(test::read_all(file("stderr.txt")).find("frames:"), std::string::npos) << signal;
+    EXPECT_TRUE(exists("r.jsonl"));
+    EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
+  }
 }
 
 TEST_F(Live, StopsAfterAsManyFramesAsAskedFor) {

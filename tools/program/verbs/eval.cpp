@@ -86,7 +86,7 @@ void print_words(const evaluation::Measures& measures, std::uint64_t frames,
   fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
              measures.answered, measures.correct, near);
   if (measures.unknown > 0) {
-    fmt::print("{:>8} answers more are to frames that the truth does not list\n", measures.unknown);
+    fmt::print("{:>8} more answers are to frames that the truth does not list\n", measures.unknown);
   }
   print_share(measures.precision, "precision");
   print_share(measures.recall, "recall");

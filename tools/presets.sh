@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+# For tools/test and tools/check: builds presets and runs their tests, both cores at work.
+
+# Paths inside the checkout do not count, so that a fresh clone finds what another one compiled. The
+# sloppiness is what ccache asks for where headers are precompiled.
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+export CCACHE_SLOPPINESS=pch_defines,time_macros
+jobs=$(nproc)
+
+# build PRESET [TARGET...]
+build() {
+  local preset=$1
+  shift
+  echo "== build $preset"
+  cmake --preset "$preset" >/dev/null || return 1
+  if ! cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"} >"build/$preset.log"; then
+    cat "build/$preset.log"
+    return 1
+  fi
+}
+
+# run_tests PRESET [CTEST'S ARGUMENTS...]
+run_tests() {
+  local preset=$1
+  shift
+  echo "== test $preset $*"
+  ctest --test-dir "build/$preset" --parallel "$jobs" --output-on-failure --no-tests=error "$@" \
+    >"build/$preset-tests.log" || { cat "build/$preset-tests.log"; return 1; }
+  # Skipped tests say why in the log.
+  grep -A99 '^100% tests passed\|^The following tests did not run' "build/$preset-tests.log"
+}
