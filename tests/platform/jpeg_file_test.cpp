@@ -14,6 +14,7 @@
 
 #include "expect_setup_error.hpp"
 #include "platform/jpegs.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/opencv/image_folder_source.hpp"
 #include "seqloop/turbojpeg/jpeg_file_decoder.hpp"
 
@@ -225,24 +226,31 @@ std::size_t address_space() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// The fault of a folder's only frame in a process that can take 400 MB more.
-std::string fault_when_short_of_memory(const std::string& name, const std::string& content) {
-  const TemporaryFolder drive;
-  const TemporaryFolder said;
-  drive.write(name, content);
+/// What is said in a process that can take only so many bytes more.
+template <class Work>
+std::string said_with_memory(std::size_t more, Work work) {
+  const TemporaryFolder folder;
   const pid_t child = ::fork();
   if (child == 0) {
-    ImageFolderSource source = open(drive);
-    const rlim_t most = address_space() + (std::size_t{400} << 20);
+    const rlim_t most = address_space() + more;
     const rlimit limit{most, most};
-    Frame frame;
-    if (::setrlimit(RLIMIT_AS, &limit) == 0 && source.grab(frame) == Grab::unreadable)
-      said.write("fault", frame.fault);
+    if (::setrlimit(RLIMIT_AS, &limit) == 0) folder.write("said", work());
     ::_exit(0);
   }
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
-  return test::read_all(said.path() / "fault");
+  return test::read_all(folder.path() / "said");
+}
+
+/// The fault of a folder's only frame where it cannot have 400 MB.
+std::string fault_when_short_of_memory(const std::string& name, const std::string& content) {
+  const TemporaryFolder drive;
+  drive.write(name, content);
+  ImageFolderSource source = open(drive);
+  return said_with_memory(std::size_t{400} << 20, [&] {
+    Frame frame;
+    return source.grab(frame) == Grab::unreadable ? std::string(frame.fault) : "";
+  });
 }
 
 TEST(PictureFiles, TooLittleMemoryIsSaidWithTheSize) {
@@ -265,6 +273,21 @@ TEST(PictureFiles, TooLittleMemoryIsSaidWithTheSize) {
   const std::string fault = fault_when_short_of_memory("a.ppm", "P5 13000 13000 255\nxxxx");
   EXPECT_TRUE(says(fault, "a.ppm: there is not enough memory for the picture ("));
   EXPECT_TRUE(says(fault, "507000000 bytes"));
+}
+
+TEST(PictureFiles, TooLittleMemoryToDescribeThemIsSaidWithTheSize) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers reserve more address space than a limit would leave";
+#endif
+  const auto describer = opencv::make_builtin_describer();
+  std::vector<float> descriptor(describer->size());
+  const cv::Mat picture(13'000, 13'000, CV_8UC3);
+  const std::string said = said_with_memory(std::size_t{50} << 20, [&] {
+    return describer->describe(test::image_of(picture), descriptor) == Description::failed
+               ? std::string(describer->last_fault())
+               : "";
+  });
+  EXPECT_EQ(said, "there is not enough memory to describe a picture of 13000x13000");
 }
 
 }  // namespace

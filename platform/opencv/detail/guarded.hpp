@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <new>
 #include <opencv2/core.hpp>
 #include <span>
 #include <string>
@@ -24,10 +25,16 @@ template <class Work>
     fault = fault_of(image);
     if (fault.empty() && descriptor.size() != size) fault = "the descriptor has another length";
     if (!fault.empty()) return Description::failed;
+    const auto no_memory = [&image] {
+      return "there is not enough memory to describe a picture of " + std::to_string(image.width) +
+             "x" + std::to_string(image.height);
+    };
     try {
       return work();
     } catch (const cv::Exception& error) {
-      fault = "OpenCV: " + one_line(error.err);
+      fault = error.code == cv::Error::StsNoMem ? no_memory() : "OpenCV: " + one_line(error.err);
+    } catch (const std::bad_alloc&) {
+      fault = no_memory();
     } catch (const std::exception& error) {
       fault = error.what();
     }
