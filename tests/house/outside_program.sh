@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Builds and runs the program that the top README.md shows, against an installed copy, as a user would.
 # Usage: outside_program.sh SOURCE BUILD DRIVE_MAKER EMULATOR CMAKE_ARGUMENT...
-# EMULATOR starts what was built, and is empty where nothing is needed for that.
+# EMULATOR starts what was built: env where nothing is needed for that.
 set -eu
 source=$1 build=$2 maker=$3 emulator=$4
 shift 4
