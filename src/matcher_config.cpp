@@ -27,8 +27,11 @@ void check_range(Faults& faults, const char* name, std::size_t value, std::size_
                               " and " + std::to_string(high)});
 }
 
-void check_velocities(Faults& faults, const MatcherConfig& config) {
-  constexpr double fastest = 10.0;
+// Rows a frame.
+constexpr double fastest = 10.0;
+
+/// @return whether lines can be counted with them
+bool check_velocities(Faults& faults, const MatcherConfig& config) {
   const auto check = [&](const char* name, double velocity) {
     if (velocity >= 0.0 && velocity <= fastest) return true;
     faults.push_back({name, number(velocity) + " is not between 0 and 10 rows a frame"});
@@ -36,7 +39,7 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
   };
   const bool vmin_fits = check("vmin", config.vmin);
   const bool vmax_fits = check("vmax", config.vmax);
-  if (!vmin_fits || !vmax_fits) return;
+  if (!vmin_fits || !vmax_fits) return false;
   if (config.vmin > config.vmax) {
     faults.push_back({"vmin", number(config.vmin) + " is above vmax, " + number(config.vmax)});
   } else if (velocity_range(config.sequence_length, config.vmin, config.vmax).count() == 0) {
@@ -45,6 +48,7 @@ void check_velocities(Faults& faults, const MatcherConfig& config) {
                           number(config.vmin) + " and " + number(config.vmax),
                       "widen the range or raise sequence_length"});
   }
+  return config.vmin <= config.vmax;
 }
 
 /// Distances that a range of num + 1 rows takes a frame while it moves along with the robot: the
@@ -73,14 +77,15 @@ std::size_t distances_a_frame(const MatcherConfig& config) noexcept {
 std::size_t least_places(const MatcherConfig& config) noexcept {
   const auto ds = static_cast<double>(config.sequence_length);
   return config.exclude + config.sequence_length + 2 +
-         static_cast<std::size_t>(std::ceil(config.vmin * ds));
+         // Asked before the velocities are known to be any.
+         static_cast<std::size_t>(std::ceil(std::min(std::max(0.0, config.vmin), fastest) * ds));
 }
 
 Faults validate(const MatcherConfig& config) {
   constexpr std::size_t many = 1'000'000'000;
   Faults faults;
   check_range(faults, "sequence_length", config.sequence_length, 0, 2'000);
-  check_velocities(faults, config);
+  const bool velocities_fit = check_velocities(faults, config);
   check_range(faults, "rwindow", config.rwindow, 0, many);
   if (config.enhance && config.rwindow < 2) {
     faults.push_back({"rwindow", std::to_string(config.rwindow) + " leaves no rows to enhance by",
@@ -99,7 +104,7 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "reinit", config.reinit, 1, many);
   if (relocalises(config)) {
     check_range(faults, "relocalising.rows_scanned", config.relocalising.rows_scanned, 2, many);
-    const std::size_t least = distances_of_one_range(config);
+    const std::size_t least = velocities_fit ? distances_of_one_range(config) : 0;
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
       faults.push_back({"relocalising.distances",
                         std::to_string(config.relocalising.distances) +
