@@ -34,14 +34,6 @@ constexpr std::size_t neighbours = 16;
 // Bits that differ between pictures that have nothing in common.
 constexpr std::uint32_t chance = DescriptorRows::close_words * 64 / 2;
 
-/// The distance of two unit vectors whose sketches differ in this share of their bits: the angle
-/// between them is about pi times the share. The sine is Bhaskara's, which is off by .002 at most
-/// and the same on every processor.
-double chord(double share) noexcept {
-  const double x = share / 2.0 * (1.0 - share / 2.0);
-  return 32.0 * x / (5.0 - 4.0 * x);
-}
-
 std::size_t rows_a_scan(const MatcherConfig& config, std::size_t places) {
   return std::min(config.relocalising.rows_scanned, places);
 }
@@ -53,7 +45,7 @@ CandidateProposals::CandidateProposals(Arena& arena, const MatcherConfig& config
     : ds_(config.sequence_length),
       rows_a_scan_(rows_a_scan(config, places)),
       near_(config.num / 2) {
-  const bool used = relocalises(config);
+  const bool used = scans(config);
   remembered_ = arena.take<Alike>("rows that look alike", used ? most : 0);
   proposals_ = arena.take<Proposal>("proposed lines", used ? most : 0);
   best_ = arena.take<Alike>("best rows of a scan", used ? looked_at_closely : 0);
@@ -80,11 +72,11 @@ CandidateProposals::Looks CandidateProposals::most_looks(const MatcherConfig& co
 }
 
 CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, const PlaceMap& map,
-                                                   std::size_t rows,
+                                                   std::size_t rows, std::uint64_t newest,
                                                    std::uint64_t oldest) noexcept {
   scanned_ = 0;
   sketches_ = 0;
-  const std::uint64_t newest = queries.newest();
+  newest_ = newest;
   frames_ = std::min<std::size_t>(frames_looked_at,
                                   static_cast<std::size_t>((newest - oldest) / frames_apart) + 1);
 
@@ -106,6 +98,8 @@ CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, 
 /// neighbours.
 std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
     const QueryHistory& queries, const PlaceMap& map, std::size_t rows) noexcept {
+  scan_ = {};
+  found_ = 0;
   if (rows == 0) return {};
   // Scans go round: after the last row comes the first, and none is longer than the map.
   const std::size_t begin = next_ % rows;
@@ -113,6 +107,7 @@ std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
   const std::size_t to_the_end = std::min(bits.size(), rows - begin);
   scan(queries, map, begin, bits.first(to_the_end));
   scan(queries, map, 0, bits.subspan(to_the_end));
+  scan_ = {begin, bits};
   next_ = (begin + bits.size()) % rows;
   std::size_t found = 0;
   for (std::size_t first = 0; first < bits.size(); first += neighbours) {
@@ -124,13 +119,14 @@ std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
     const std::size_t row = (begin + first + static_cast<std::size_t>(where)) % rows;
     found = keep_lowest(best_, found, {least, row}, &Alike::bits);
   }
+  found_ = found;
   return best_.first(found);
 }
 
 /// Compares the newest frame with consecutive rows.
 void CandidateProposals::scan(const QueryHistory& queries, const PlaceMap& map, std::size_t first,
                               std::span<std::uint32_t> bits) noexcept {
-  const std::size_t query = queries.row_of(queries.newest());
+  const std::size_t query = queries.row_of(newest_);
   map.order().in_slots(
       first, first + bits.size(), [&](std::size_t row, std::size_t slot, std::size_t count) {
         map.rows().scan(queries.rows(), query, slot, bits.subspan(row - first, count));
@@ -171,7 +167,7 @@ std::uint32_t CandidateProposals::differing_bits(const QueryHistory& queries, co
                                                  std::size_t row, std::size_t behind) noexcept {
   if (behind > row || row - behind >= rows) return chance;
   ++sketches_;
-  return map.rows().look_closely(queries.rows(), queries.row_of(queries.newest() - back),
+  return map.rows().look_closely(queries.rows(), queries.row_of(newest_ - back),
                                  map.order().slot(row - behind));
 }
 
@@ -193,8 +189,7 @@ void CandidateProposals::remember(Alike alike) noexcept {
 /// Weighs what is remembered along the whole window.
 void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
                                std::uint64_t oldest) noexcept {
-  const auto reach =
-      static_cast<std::size_t>(std::min<std::uint64_t>(queries.newest() - oldest, ds_));
+  const auto reach = static_cast<std::size_t>(std::min<std::uint64_t>(newest_ - oldest, ds_));
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t row = remembered_[i].row;
     const std::size_t line = best_line(queries, map, rows, row, reach);

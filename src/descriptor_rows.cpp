@@ -24,7 +24,7 @@ std::size_t stride_of(const DescriptorForm& form) {
 
 std::size_t words_of(const DescriptorForm& form) {
   if (form.arithmetic == Arithmetic::sketch) return sketch_words;
-  return form.relocalising ? DescriptorRows::close_words : 0;
+  return form.scanned ? DescriptorRows::close_words : 0;
 }
 
 // The same of several queries at once: of this many rows, what is not near any more when the
@@ -44,7 +44,7 @@ void in_pieces(std::size_t count, std::size_t most, Work work) {
 DescriptorForm::DescriptorForm(const MatcherConfig& config, std::size_t descriptor_size) noexcept
     : difference(config.difference),
       arithmetic(config.arithmetic),
-      relocalising(relocalises(config)),
+      scanned(scans(config)),
       size(descriptor_size) {}
 
 double DescriptorForm::unit() const noexcept {
@@ -71,8 +71,8 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
       sketched_values_(
           arena.take<SketchedValue>("what a sketch is made of", sketched_values(words_))),
       sketches_(arena.take<std::uint64_t>(names.sketches, std::uint64_t{rows} * words_)),
-      scanned_(arena.take<std::uint64_t>(
-          names.sketches, form.relocalising ? std::uint64_t{rows} * scanned_words : 0)) {
+      scanned_(arena.take<std::uint64_t>(names.sketches,
+                                         form.scanned ? std::uint64_t{rows} * scanned_words : 0)) {
   choose_sketched_values(form.size, sketched_values_);
 }
 
@@ -90,7 +90,7 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
   if (words_ == 0) return;
   const std::span<std::uint64_t> words = sketches_.subspan(row * words_, words_);
   sketch(bytes.first(form_.size), sketched_values_, words);
-  if (!form_.relocalising) return;
+  if (!form_.scanned) return;
   std::ranges::copy(words.first(scanned_words), scanned_.subspan(row * scanned_words).begin());
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "seqloop/detail/keep_lowest.hpp"
+#include "seqloop/detail/portable_math.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -53,7 +55,8 @@ Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descript
 /// some came by themselves.
 std::size_t queries_kept(const MatcherConfig& config) {
   const std::size_t ds = config.sequence_length;
-  const std::size_t kept = std::max(ds + 1, ds - ds / 2 + ChangeDegree::reach + 1);
+  const std::size_t kept =
+      std::max({ds + 1, ds - ds / 2 + ChangeDegree::reach + 1, PlaceBelief::reach + 1});
   const std::size_t at_once = config.frames_at_once;
   return (kept + at_once - 1 + at_once - 1) / at_once * at_once;
 }
@@ -83,9 +86,11 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   const std::uint64_t lines =
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();
   const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
+  CandidateProposals::Looks looks{0, 0};
+  if (scans(config)) looks = CandidateProposals::most_looks(config, capacity.places);
+  if (config.decision == Decision::probability) looks.closely += PlaceBelief::most_sketches;
   if (relocalises(config)) {
     const std::size_t rows = std::min(CandidateBudget::most_rows(config), capacity.places);
-    const CandidateProposals::Looks looks = CandidateProposals::most_looks(config, capacity.places);
     return {rows, distances_a_frame(config) + change, rows * lines, looks.scanned, looks.closely};
   }
   // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
@@ -101,7 +106,8 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
     const std::size_t growing = reach - std::min(reach, config.exclude);
     distances += ds * (ds + 1) / 2 + (ds + growing) * growing;
   }
-  return {capacity.places, distances + change, capacity.places * lines, 0, 0};
+  return {capacity.places, distances + change, capacity.places * lines, looks.scanned,
+          looks.closely};
 }
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
@@ -127,9 +133,12 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       proposals_(arena, config, capacity.places),
       budget_(arena, config),
       decision_(arena, config),
+      belief_(arena, config, capacity.places),
+      pending_(arena, config, trajectories_),
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
+  pending_.clear();
   const std::uint64_t newest = queries_.frames();
   const bool readable = take_query(descriptor);
   const bool became_place = config_.use == Use::localise || become_place();
@@ -147,6 +156,7 @@ void Detector::steps(std::span<const std::span<const float>> descriptors,
     for (std::size_t i = 0; i < count; ++i) reports[i] = step(descriptors[i]);
     return;
   }
+  pending_.clear();
   for (std::size_t begin = 0; begin < count; begin += config_.frames_at_once) {
     const std::size_t together = std::min(config_.frames_at_once, count - begin);
     const std::uint64_t first = queries_.frames();
@@ -160,8 +170,81 @@ void Detector::steps(std::span<const std::span<const float>> descriptors,
   }
 }
 
-/// Matches the centre frame of a window whose newest frame has been taken.
+/// Answers the frames whose answer is due once the newest has been taken.
 FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
+  const std::size_t before = pending_.answers().size();
+  if (config_.decision == Decision::probability) {
+    pending_.add(newest, readable);
+    FrameReport report = match_centre(newest, readable);
+    report_due(report, readable);
+    report.answers = pending_.answers().subspan(before);
+    return report;
+  }
+  FrameReport report = match_centre(newest, readable);
+  if (report.frame && report.gate != Gate::warming_up) {
+    pending_.say(
+        {*report.frame, report.gate, std::numeric_limits<float>::quiet_NaN(), report.match});
+  }
+  report.answers = pending_.answers().subspan(before);
+  return report;
+}
+
+void Detector::report_due(FrameReport& report, bool readable) noexcept {
+  const std::size_t before = pending_.answers().size();
+  if (readable) pending_.believe(belief_, *map_, report.newest);
+  pending_.answer(belief_, *map_, report.newest, window_began_);
+  const std::span<const Answer> answers = pending_.answers().subspan(before);
+  report.gate = readable ? Gate::warming_up : Gate::frame_error;
+  report.frame.reset();
+  report.match.reset();
+  if (!answers.empty()) {
+    report.frame = answers.back().frame;
+    report.gate = answers.back().gate;
+    report.match = answers.back().match;
+  }
+  if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
+    report.now = Belief{static_cast<std::size_t>(map_->order().number(likeliest->row)),
+                        static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
+                        static_cast<float>(belief_.new_place())};
+  }
+}
+
+/// Keeps the best lines of the centre frame, no neighbours among them.
+void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
+  std::array<FoundLine, PendingAnswers::lines_kept> lines;
+  std::size_t count = 0;
+  const std::span<const double> scores = search_.scores();
+  for (const CandidateRun run : budget_.runs()) {
+    for (std::size_t row = run.first; row < run.last; ++row) {
+      constexpr std::size_t near = 6;
+      const double score = scores[row];
+      if (score == std::numeric_limits<double>::infinity()) continue;
+      const std::size_t first = std::max(run.first, row - std::min(row, near));
+      const std::size_t last = std::min(run.last, row + near + 1);
+      bool lowest = true;
+      for (std::size_t other = first; other < last; ++other) {
+        lowest = lowest && (scores[other] > score || (scores[other] == score && other >= row));
+      }
+      if (!lowest) continue;
+      const double uniqueness = row == best.row ? best.uniqueness : score / best.score;
+      count = keep_lowest(std::span<FoundLine>(lines), count,
+                          FoundLine{row, score, uniqueness, search_.line(row)}, &FoundLine::score);
+    }
+  }
+  pending_.found(centre, std::span(lines).first(count));
+}
+
+std::span<const Answer> Detector::finish() noexcept {
+  pending_.clear();
+  const std::uint64_t end = queries_.frames();
+  if (end > 0 && config_.decision == Decision::probability)
+    pending_.answer(belief_, *map_, end - 1, end);
+  restart();
+  return pending_.answers();
+}
+
+/// Matches the centre frame of a window whose newest frame has been taken.
+FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept {
   FrameReport report;
   report.newest = newest;
   report.k = ranges_.k();
@@ -169,10 +252,19 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   report.work.distances = fill_columns(newest);
   const std::size_t rows =
       rows_searched(report.newest - std::min<std::uint64_t>(report.newest, after_centre));
-  if (relocalises(config_)) {
-    const CandidateProposals::Looks looks = proposals_.look(queries_, *map_, rows, window_began_);
+  if (scans(config_)) {
+    const CandidateProposals::Looks looks =
+        proposals_.look(queries_, *map_, rows, newest, window_began_);
     report.work.scanned = looks.scanned;
     report.work.sketches = looks.closely;
+  }
+  if (config_.decision == Decision::probability) {
+    if (readable) {
+      report.work.sketches +=
+          belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows});
+    } else {
+      belief_.pass(1, 0);
+    }
   }
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
   if (report.newest >= window_began_ + after_centre) report.frame = report.newest - after_centre;
@@ -191,6 +283,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
                                      proposals_.proposals(), rows);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
+  if (best && config_.decision == Decision::probability) keep_lines(*best, *report.frame);
 
   // Update: what the next frame starts from.
   double change = 1.0;
@@ -217,6 +310,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
   ranges_.skip(frames);
   proposals_.skip(frames);
   decision_.skip(frames);
+  belief_.pass(frames, 1);
   change_degree_ = {};
 }
 
@@ -225,6 +319,7 @@ void Detector::restart() noexcept {
   ranges_.restart();
   proposals_.restart();
   decision_.restart();
+  belief_.restart();
   change_degree_ = {};
 }
 
@@ -259,7 +354,10 @@ bool Detector::become_place() noexcept {
     ranges_.removed(*taken.removed);
     proposals_.removed(*taken.removed);
     decision_.removed(*taken.removed);
+    belief_.removed(*taken.removed);
+    pending_.removed(*taken.removed);
   }
+  if (taken.slot) belief_.added(*map_, *taken.slot, map_->size() - 1);
   return taken.slot.has_value();
 }
 
@@ -308,6 +406,11 @@ bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcep
   const std::span<const CandidateRun> ranges = ranges_.choose(rows);
   const std::span<const CandidateProposals::Proposal> proposals = proposals_.proposals();
   budget_.clear();
+  // Where the robot is believed to be comes before all.
+  if (const auto& likeliest = belief_.likeliest(); likeliest && relocalises(config_)) {
+    const std::size_t after = trajectories_.window() - 1 - trajectories_.centre();
+    budget_.add(window, ranges_.around(likeliest->row - std::min(likeliest->row, after), rows));
+  }
   // The best of both first, so that neither starves.
   for (std::size_t i = 0; i < std::max(ranges.size(), proposals.size()); ++i) {
     if (i < ranges.size()) budget_.add(window, ranges[i]);

@@ -15,6 +15,10 @@ std::string_view name(Gate gate) noexcept {
       return "no_candidate";
     case Gate::not_unique:
       return "not_unique";
+    case Gate::new_place:
+      return "new_place";
+    case Gate::unsure:
+      return "unsure";
     case Gate::match:
       return "match";
   }

@@ -67,6 +67,10 @@ bool relocalises(const MatcherConfig& config) noexcept {
   return config.relocalising.on && config.candidates != Candidates::all;
 }
 
+bool scans(const MatcherConfig& config) noexcept {
+  return relocalises(config) || config.decision == Decision::probability;
+}
+
 std::size_t distances_a_frame(const MatcherConfig& config) noexcept {
   constexpr std::size_t least = 256;
   if (config.relocalising.distances != 0) return config.relocalising.distances;
@@ -102,8 +106,9 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "initial_k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
-  if (relocalises(config)) {
+  if (scans(config))
     check_range(faults, "relocalising.rows_scanned", config.relocalising.rows_scanned, 2, many);
+  if (relocalises(config)) {
     const std::size_t least = velocities_fit ? distances_of_one_range(config) : 0;
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
       faults.push_back({"relocalising.distances",
@@ -125,6 +130,11 @@ Faults validate(const MatcherConfig& config) {
               MatcherConfig::most_frames_at_once);
   check_range(faults, "standardisation.prior_frames", config.standardisation.prior_frames, 1, many);
   check_range(faults, "standardisation.horizon", config.standardisation.horizon, 1, many);
+  check_range(faults, "patience", config.patience, 0, 1'000);
+  if (!(config.min_probability > 0.0F && config.min_probability <= 1.0F)) {
+    faults.push_back({"min_probability", number(static_cast<double>(config.min_probability)) +
+                                             " is not above 0 and at most 1"});
+  }
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {
     faults.push_back({"max_uniqueness", number(static_cast<double>(config.max_uniqueness)) +
                                             " is not above 0 and at most 1"});
@@ -138,7 +148,7 @@ Faults validate(const Capacity& capacity, const MatcherConfig& config) {
   Faults faults;
   check_range(faults, "places", capacity.places, 1, most_places);
   check_range(faults, "descriptor_size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
-  const bool small = config.arithmetic != Arithmetic::float32 || relocalises(config);
+  const bool small = config.arithmetic != Arithmetic::float32 || scans(config);
   if (small && capacity.descriptor_size > most_small_values) {
     faults.push_back({"arithmetic",
                       std::to_string(capacity.descriptor_size) + " values are too many for it, " +

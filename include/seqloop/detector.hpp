@@ -14,6 +14,8 @@
 #include "seqloop/detail/change_degree.hpp"
 #include "seqloop/detail/difference_slices.hpp"
 #include "seqloop/detail/loop_decision.hpp"
+#include "seqloop/detail/pending_answers.hpp"
+#include "seqloop/detail/place_belief.hpp"
 #include "seqloop/detail/query_history.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/detail/sequence_search.hpp"
@@ -82,6 +84,17 @@ class Detector {
   /// Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
+  /// The recording is over: answers every frame that still waits. A live loop calls it when it
+  /// ends; a step after it begins anew, as after many frames that never came.
+  /// @return in order of frame; valid until the next step. Work: none to speak of.
+  /// Allocates: never.
+  [[nodiscard]] std::span<const Answer> finish() noexcept;
+
+  /// What is believed at the newest frame, and what for: where the decision is by probability.
+  [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept {
+    return pending_.evidence();
+  }
+
   /// About what the newest step compared: its descriptor, standardised if that is on.
   /// @param out [map.rows().restored_size()]; at least one step must have been made
   void newest_query(std::span<float> out) const noexcept {
@@ -101,6 +114,9 @@ class Detector {
            ArenaMemory&& memory);
 
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
+  [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
+  void keep_lines(const BestRow& best, std::uint64_t centre) noexcept;
+  void report_due(FrameReport& report, bool readable) noexcept;
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
@@ -124,6 +140,8 @@ class Detector {
   CandidateBudget budget_;
   ChangeDegree change_degree_;
   LoopDecision decision_;
+  PlaceBelief belief_;
+  PendingAnswers pending_;
   std::span<float> standardised_;  // [D]
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace seqloop {
@@ -12,14 +13,16 @@ namespace seqloop {
 enum class Gate : std::uint8_t {
   no_frame,      ///< a live source brought no frame in time, or lost its camera
   frame_error,   ///< the newest frame could not be read or described
-  warming_up,    ///< fewer than ds + 1 frames have been seen
+  warming_up,    ///< no answer is due yet: too few frames have been seen
   no_candidate,  ///< no line fits into the rows that may be searched
-  not_unique,    ///< there is a best row, but another stands out nearly as much
+  not_unique,    ///< `Decision::uniqueness`: another row stands out nearly as much as the best
+  new_place,     ///< the robot is somewhere new, for all that is known
+  unsure,        ///< it may have been here before, but the evidence does not suffice
   match          ///< the robot has been here before
 };
 
 /// How many gates there are.
-inline constexpr std::size_t gates = 6;
+inline constexpr std::size_t gates = 8;
 
 /// `no_frame`, `frame_error`, ...
 [[nodiscard]] std::string_view name(Gate gate) noexcept;
@@ -48,15 +51,38 @@ struct Work {
   bool operator==(const Work&) const = default;
 };
 
-/// The answer to one frame.
-struct FrameReport {
-  std::uint64_t newest = 0;            ///< the frame that was stepped, from 0
-  std::optional<std::uint64_t> frame;  ///< the centre frame, which the answer is about, once known
+/// What is said of one frame in the end: there is one for each frame.
+struct Answer {
+  std::uint64_t frame = 0;  ///< counted from 0
   Gate gate = Gate::frame_error;
-  std::optional<Match> match;  ///< at the gates `not_unique` and `match`
-  std::size_t k = 0;           ///< K in force for this frame; 0 where all rows are candidates
-  bool full_search = false;    ///< whether all rows were candidates
-  bool map_full = false;       ///< closing loops: the frame could not become a place
+  /// That the robot was at `match` when it took the frame, 0 .. 1: of answers that say .9, nine in
+  /// ten are right. NaN where the decision is by uniqueness.
+  float probability = 0.0F;
+  std::optional<Match> match;  ///< the best place, whether or not it suffices; none: nothing known
+};
+
+/// Where the robot is believed to be at the newest frame, by what has been seen so far.
+struct Belief {
+  std::size_t place = 0;     ///< the likeliest
+  float probability = 0.0F;  ///< that it is there, 0 .. 1
+  float new_place = 1.0F;    ///< that it is somewhere the map does not know, 0 .. 1
+};
+
+/// What one step has to say.
+struct FrameReport {
+  /// The final answers that became due with this step, in order of their frames; in the detector's
+  /// memory, until its next step.
+  std::span<const Answer> answers;
+  std::optional<Belief> now;  ///< of the newest frame; none before places can be compared
+
+  std::uint64_t newest = 0;  ///< the frame that was stepped, from 0
+  /// The last of `answers`, where there are any; then its gate and match.
+  std::optional<std::uint64_t> frame;
+  Gate gate = Gate::frame_error;  ///< without an answer `warming_up`, or `frame_error`
+  std::optional<Match> match;
+  std::size_t k = 0;         ///< K in force for this frame; 0 where all rows are candidates
+  bool full_search = false;  ///< whether all rows were candidates
+  bool map_full = false;     ///< closing loops: the frame could not become a place
   Work work;
 };
 

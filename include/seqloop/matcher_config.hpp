@@ -35,6 +35,12 @@ enum class Use : std::uint8_t {
   close_loops  ///< the drive itself, without its last `exclude` frames
 };
 
+/// What decides whether a frame's best row is a place that the robot has been to.
+enum class Decision : std::uint8_t {
+  probability,  ///< evidence over time, calibrated
+  uniqueness    ///< the paper's: how far the best row of one window stands out
+};
+
 /// What becomes of a frame when the map, closing loops, is full.
 enum class FullMap : std::uint8_t {
   refuse,         ///< it becomes no place
@@ -101,7 +107,13 @@ struct MatcherConfig {
   /// A blank descriptor (`blank()`: a covered lens, a black tunnel) counts as a frame that could
   /// not be read. Otherwise all such frames look alike, and match each other with top certainty.
   bool blank_is_unreadable = true;
-  float max_uniqueness = 0.94F;  ///< a match must be at least this unique; above 0 .. 1
+  Decision decision = Decision::probability;
+  float min_probability = 0.99F;  ///< a match must be at least this probable; above 0 .. 1
+  /// Frames that come after a frame before its answer is due at the latest; 0 .. 1,000. Each keeps
+  /// a descriptor and what is believed.
+  std::size_t patience = 30;
+  /// By uniqueness: a match must be at least this unique; above 0 .. 1
+  float max_uniqueness = 0.94F;
 
   bool operator==(const MatcherConfig&) const = default;
 };
@@ -114,6 +126,10 @@ struct Capacity {
 
 /// Whether a frame has candidate ranges and a part of the map to scan, and never all rows.
 [[nodiscard]] bool relocalises(const MatcherConfig& config) noexcept;
+
+/// Whether places have sketches by which each frame looks at a slice of the map: to relocalise, or
+/// to decide by probability.
+[[nodiscard]] bool scans(const MatcherConfig& config) noexcept;
 
 /// The most descriptor distances that the candidates of one frame may cost where the detector
 /// relocalises: seven times what keeping up with one range takes, or 256 if that is more, unless

@@ -40,7 +40,7 @@ TEST(CandidateProposals, LookAtEveryRowOnceInARound) {
       queries.push(drive[row]);
       proposals.restart();
       for (std::size_t frame = 0; frame < round; ++frame) {
-        const auto looks = proposals.look(queries, map, places, queries.newest());
+        const auto looks = proposals.look(queries, map, places, queries.newest(), queries.newest());
         EXPECT_LE(looks.scanned, CandidateProposals::most_looks(config, places).scanned);
         EXPECT_LE(looks.closely, CandidateProposals::most_looks(config, places).closely);
       }
@@ -67,12 +67,13 @@ TEST(CandidateProposals, LookAtEveryRowWhileTheMapGrows) {
       queries.push(drive[row]);
       std::size_t rows = 80;
       for (std::size_t frame = 0; frame < row; ++frame) {  // wherever the scan has come to
-        static_cast<void>(proposals.look(queries, map, rows++, 0));
+        static_cast<void>(proposals.look(queries, map, rows++, queries.newest(), 0));
       }
       proposals.restart();
       const std::size_t round = round_of_a_moving_map(rows, scanned);
       for (std::size_t frame = 0; frame < round; ++frame) {
-        static_cast<void>(proposals.look(queries, map, std::min(rows++, places), 0));
+        static_cast<void>(
+            proposals.look(queries, map, std::min(rows++, places), queries.newest(), 0));
       }
       EXPECT_TRUE(proposed(proposals, row)) << "row " << row << ", scanned " << scanned;
     }
@@ -109,7 +110,8 @@ TEST(CandidateProposals, LookAtEveryRowWhilePlacesGo) {
           take(frame++);
           // Compared as if the robot were at the place again.
           queries.push(drive[static_cast<std::size_t>(number)]);
-          static_cast<void>(proposals.look(queries, map, places, queries.newest()));
+          static_cast<void>(
+              proposals.look(queries, map, places, queries.newest(), queries.newest()));
           std::size_t row = 0;
           while (row < places && map.order().number(row) != number) ++row;
           gone = row == places;
@@ -132,14 +134,14 @@ TEST(CandidateProposals, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
   CandidateProposals proposals(memory.arena, config, 100);
   queries.push(drive[40]);
   for (std::size_t row = 0; row <= 40; row += 2) {
-    static_cast<void>(proposals.look(queries, map, 100, 0));
+    static_cast<void>(proposals.look(queries, map, 100, queries.newest(), 0));
   }
   ASSERT_TRUE(proposed(proposals, 40));
   proposals.removed(99);
   for (int place = 0; place < 10; ++place) proposals.removed(0);
   proposals.skip(9);
   // 40 less 10 that went, 9 frames and this one further on; the scanned is far from it.
-  static_cast<void>(proposals.look(queries, map, 100, 0));
+  static_cast<void>(proposals.look(queries, map, 100, queries.newest(), 0));
   EXPECT_TRUE(proposed(proposals, 40));
   proposals.restart();
   EXPECT_TRUE(proposals.proposals().empty());

@@ -171,6 +171,7 @@ TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
   const oracle::Vectors drive = oracle::drive(6, 200, 16, 0.1F);
   MatcherConfig config;
   config.candidates = Candidates::all;
+  config.decision = Decision::uniqueness;
   PlaceMap map = map_of(drive, config);
   Detector detector(config, map);
   std::size_t right = 0;

@@ -27,6 +27,7 @@ inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use:
   config.relocalising.on = false;
   config.standardisation.on = false;
   config.blank_is_unreadable = false;
+  config.decision = Decision::uniqueness;
   config.max_uniqueness = 1.0F;
   return config;
 }

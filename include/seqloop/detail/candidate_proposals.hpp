@@ -34,10 +34,27 @@ class CandidateProposals {
 
   /// Looks again at what is remembered, then scans the next rows.
   /// @param rows   rows of the map that may be searched
+  /// @param newest the frame that is looked for
   /// @param oldest the oldest frame that belongs together with the newest
   /// Work: what it returns. Allocates: never.
   Looks look(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
-             std::uint64_t oldest) noexcept;
+             std::uint64_t newest, std::uint64_t oldest) noexcept;
+
+  /// What the last call scanned.
+  struct Scan {
+    std::size_t first = 0;                ///< row that it began at; behind the last follows row 0
+    std::span<const std::uint32_t> bits;  ///< of the scanned words that differ, row by row
+  };
+  [[nodiscard]] const Scan& scanned() const noexcept { return scan_; }
+
+  /// A row that the newest frame may show.
+  struct Alike {
+    std::uint32_t bits;  ///< that differ, summed over the frames that were looked at
+    std::size_t row;
+  };
+
+  /// @return the rows of that scan that are most alike, no neighbours among them
+  [[nodiscard]] std::span<const Alike> found() const noexcept { return best_.first(found_); }
 
   /// A line that the frames of the window may have taken through the map.
   struct Proposal {
@@ -60,12 +77,6 @@ class CandidateProposals {
   void restart() noexcept { count_ = 0; }
 
  private:
-  /// A row that the newest frame may show.
-  struct Alike {
-    std::uint32_t bits;  // that differ, summed over the frames that were looked at
-    std::size_t row;
-  };
-
   [[nodiscard]] std::span<const Alike> best_of_scan(const QueryHistory& queries,
                                                     const PlaceMap& map, std::size_t rows) noexcept;
   void look_closely(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
@@ -94,6 +105,9 @@ class CandidateProposals {
   std::size_t scanned_ = 0;
   std::size_t sketches_ = 0;
   std::size_t count_ = 0;
+  std::size_t found_ = 0;
+  std::uint64_t newest_ = 0;
+  Scan scan_;
   std::span<Alike> remembered_;    // [most], best first
   std::span<Alike> best_;          // of the scan, best first
   std::span<Proposal> proposals_;  // [most], what is remembered along the window, best first

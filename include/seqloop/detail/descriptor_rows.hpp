@@ -18,8 +18,8 @@ struct DescriptorForm {
 
   Difference difference;
   Arithmetic arithmetic;
-  bool relocalising;  ///< whether there are sketches to relocalise by
-  std::size_t size;   ///< D
+  bool scanned;      ///< whether there are sketches to scan the map by
+  std::size_t size;  ///< D
 
   bool operator==(const DescriptorForm&) const = default;
 

@@ -144,6 +144,7 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
   config.enhance = settings.enhance.value_or(settings.method == "seqslam");
   config.standardisation.on = settings.standardise.value_or(!settings.paper && !patches);
   config.blank_is_unreadable = !settings.paper;
+  config.decision = settings.paper ? Decision::uniqueness : Decision::probability;
   resolve_method(settings.method, config, faults);
   config.arithmetic = settings.arithmetic.value_or(settings.paper || patches ? Arithmetic::float32
                                                                              : Arithmetic::int8);

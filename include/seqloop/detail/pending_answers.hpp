@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/place_belief.hpp"
+#include "seqloop/detail/trajectories.hpp"
+#include "seqloop/frame_report.hpp"
+#include "seqloop/matcher_config.hpp"
+#include "seqloop/place_map.hpp"
+
+namespace seqloop {
+
+/// A line that sequence search found for a frame.
+struct FoundLine {
+  std::size_t row;    ///< at the frame's column
+  double score;       ///< mean difference along it
+  double uniqueness;  ///< as `Match` has it
+  std::size_t line;
+};
+
+/// Frames that wait for their one final answer: until the evidence suffices, or as many frames have
+/// come after them as patience allows. The belief says whether, sequence search where.
+class PendingAnswers {
+ public:
+  /// Lines that are kept of a frame.
+  static constexpr std::size_t lines_kept = 4;
+
+  /// Allocates: from the arena only.
+  PendingAnswers(Arena& arena, const MatcherConfig& config, const Trajectories& trajectories);
+
+  /// Another frame waits. @param readable whether it could be read
+  void add(std::uint64_t frame, bool readable) noexcept;
+
+  /// What sequence search found for a frame, best first; at most `lines_kept`.
+  void found(std::uint64_t frame, std::span<const FoundLine> lines) noexcept;
+
+  /// Takes in what is believed at the newest frame.
+  /// Work: a pass over the frames that wait. Allocates: never.
+  void believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest) noexcept;
+
+  /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
+  [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
+
+  /// Writes the answers that are due, in order of frame, behind those that are there.
+  /// @param oldest frame that belongs together with the newest: those before it wait no longer
+  void answer(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+              std::uint64_t oldest) noexcept;
+
+  /// Takes an answer that did not wait.
+  void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
+
+  [[nodiscard]] std::span<const Answer> answers() const noexcept { return answers_.first(given_); }
+
+  /// The answers so far have been handed over.
+  void clear() noexcept { given_ = 0; }
+
+  /// A row went from the map: those behind it are counted one lower.
+  void removed(std::size_t row) noexcept;
+
+ private:
+  struct Waiting {
+    std::uint64_t frame;
+    bool waits;
+    bool readable;
+    bool believed;      // whether it lies on a trace
+    std::size_t row;    // there
+    std::size_t asked;  // how often it was looked at there,
+    double odds;        // mean log-odds that the trace is right
+    double on;          // probability that the frame lies on it, given that
+    std::uint64_t lag;  // frames that had come after it when it was looked at last
+    double new_place;   // belief in none, as it came
+    std::size_t lines;  // found
+  };
+
+  /// How likely a trace begins at a frame, or has ended before it, beside other frames.
+  struct Ends {
+    double entered;
+    double gone;
+  };
+
+  [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept {
+    return waiting_[static_cast<std::size_t>(frame % waiting_.size())];
+  }
+  [[nodiscard]] std::span<FoundLine> lines_of(std::uint64_t frame) noexcept {
+    return lines_.subspan(static_cast<std::size_t>(frame % waiting_.size()) * lines_kept,
+                          lines_kept);
+  }
+  void ask_windows(const PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+                   std::size_t length) noexcept;
+  [[nodiscard]] std::optional<FoundLine> line_near(const PlaceBelief& belief, const PlaceMap& map,
+                                                   std::uint64_t frame) noexcept;
+  [[nodiscard]] Match match(const PlaceBelief& belief, const PlaceMap& map,
+                            std::uint64_t frame) noexcept;
+  void give(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+            Waiting& waiting) noexcept;
+
+  const Trajectories* trajectories_;
+  std::size_t patience_;
+  std::size_t after_centre_;
+  double least_;
+  std::uint64_t first_ = 0;  // frame that may still wait
+  std::uint64_t end_ = 0;    // after the newest
+  std::size_t given_ = 0;
+  std::optional<Evidence> evidence_;
+  std::span<Waiting> waiting_;          // [patience + ds + 2], a ring by frame
+  std::span<FoundLine> lines_;          // [the same, lines_kept]
+  std::span<Answer> answers_;           // [patience + frames at once + 1]
+  std::span<PlaceBelief::Step> trace_;  // [patience + 1]
+  std::span<Ends> weights_;             // [patience + 2]
+};
+
+}  // namespace seqloop

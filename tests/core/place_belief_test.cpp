@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Evidence over time: every frame is answered once, surely where it is known, and not where not.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+constexpr std::size_t size = 256;
+
+MatcherConfig settings(Use use) {
+  MatcherConfig config;
+  config.use = use;
+  config.standardisation.on = false;
+  return config;
+}
+
+oracle::Vectors unit(oracle::Vectors drive) {
+  for (auto& descriptor : drive) {
+    double squares = 0.0;
+    for (const float value : descriptor) squares += static_cast<double>(value * value);
+    for (float& value : descriptor) value /= static_cast<float>(std::sqrt(squares));
+  }
+  return drive;
+}
+
+/// A way through places: neighbours share half of what they look like. Two visits of one way differ
+/// by noise.
+oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, std::uint32_t visit) {
+  std::mt19937 places(seed);
+  std::mt19937 here(seed * 7919U + visit);
+  const auto random = [](std::mt19937& engine) {
+    return static_cast<float>(engine()) / 4294967296.0F - 0.5F;
+  };
+  oracle::Vectors drive(frames, std::vector<float>(size));
+  std::vector<float> scene(size);
+  for (auto& descriptor : drive) {
+    for (std::size_t i = 0; i < size; ++i) {
+      scene[i] = 0.8F * scene[i] + random(places);
+      descriptor[i] = scene[i] + noise * random(here);
+    }
+  }
+  return unit(drive);
+}
+
+struct Said {
+  std::vector<Answer> answers;
+  std::vector<FrameReport> reports;
+  Work most;
+};
+
+Said drive_through(const oracle::Vectors& reference, const oracle::Vectors& query,
+                   const MatcherConfig& config, bool finish = true) {
+  PlaceMap map = reference.empty() ? PlaceMap(config, {query.size(), query.front().size()})
+                                   : map_of(reference, config);
+  Detector detector(config, map);
+  Said said;
+  for (const auto& descriptor : query) {
+    const FrameReport report = detector.step(descriptor);
+    said.answers.insert(said.answers.end(), report.answers.begin(), report.answers.end());
+    EXPECT_TRUE(std::ranges::is_sorted(report.answers, {}, &Answer::frame));
+    said.most.sketches = std::max(said.most.sketches, report.work.sketches);
+    said.most.scanned = std::max(said.most.scanned, report.work.scanned);
+    said.reports.push_back(report);
+  }
+  if (finish) {
+    const auto rest = detector.finish();
+    said.answers.insert(said.answers.end(), rest.begin(), rest.end());
+  }
+  std::ranges::sort(said.answers, {}, &Answer::frame);
+  return said;
+}
+
+void expect_each_frame_once(const Said& said, std::size_t frames) {
+  ASSERT_EQ(said.answers.size(), frames);
+  for (std::size_t i = 0; i < frames; ++i) {
+    EXPECT_EQ(said.answers[i].frame, i);
+    EXPECT_GE(said.answers[i].probability, 0.0F);
+    EXPECT_LE(said.answers[i].probability, 1.0F);
+  }
+}
+
+std::size_t accepted(const Said& said) {
+  return static_cast<std::size_t>(std::ranges::count(said.answers, Gate::match, &Answer::gate));
+}
+
+TEST(PlaceBelief, KnowsWhereItIsOnAKnownWayEdgesIncluded) {
+  const oracle::Vectors reference = way(1, 300, 0.5F, 1);
+  const oracle::Vectors query = way(1, 300, 0.5F, 2);
+  const Said said = drive_through(reference, query, settings(Use::localise));
+  expect_each_frame_once(said, 300);
+  EXPECT_GT(accepted(said), 270U);
+  for (const Answer& answer : said.answers) {
+    if (answer.gate != Gate::match) continue;
+    EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(answer.frame), 2.0);
+  }
+  EXPECT_EQ(said.answers.back().gate, Gate::match) << "the end of a drive";
+  EXPECT_GT(said.reports.back().now->probability, 0.99F);
+}
+
+TEST(PlaceBelief, InventsNothingWhereNoPlaceComesTwice) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_EQ(accepted(drive_through({}, way(seed, 500, 0.5F, 1), settings(Use::close_loops))), 0U);
+    const Said elsewhere = drive_through(way(seed, 400, 0.5F, 1), way(seed + 50, 400, 0.5F, 1),
+                                         settings(Use::localise));
+    EXPECT_EQ(accepted(elsewhere), 0U);
+    EXPECT_GT(std::ranges::count(elsewhere.answers, Gate::new_place, &Answer::gate), 350);
+  }
+}
+
+TEST(PlaceBelief, ClosesLoopsLapAfterLapNoWorseInTheEnd) {
+  oracle::Vectors laps;
+  for (std::uint32_t lap = 0; lap < 6; ++lap) {
+    const oracle::Vectors more = way(3, 200, 0.5F, lap);
+    laps.insert(laps.end(), more.begin(), more.end());
+  }
+  const Said said = drive_through({}, laps, settings(Use::close_loops));
+  expect_each_frame_once(said, laps.size());
+  for (std::size_t lap = 0; lap < 6; ++lap) {
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < 200; ++i) {
+      const Answer& answer = said.answers[lap * 200 + i];
+      if (answer.gate != Gate::match) continue;
+      ++found;
+      const auto off = static_cast<int>(answer.match->place % 200) - static_cast<int>(i);
+      // A window that holds the end of the lap before is off by some rows.
+      EXPECT_LE(std::abs(off), i < 10 ? 10 : 2) << "lap " << lap << ", frame " << i;
+    }
+    EXPECT_TRUE(lap == 0 ? found == 0 : found > 180) << "lap " << lap << ": " << found;
+  }
+}
+
+TEST(PlaceBelief, ARobotThatStandsGainsNothing) {
+  const oracle::Vectors places = way(4, 300, 0.5F, 1);
+  oracle::Vectors query = way(5, 30, 0.5F, 1);
+  std::mt19937 random(6);
+  const std::vector<float> last = query.back();
+  for (int i = 0; i < 2000; ++i) {
+    query.push_back(last);
+    for (float& value : query.back()) {
+      value += 0.002F * (static_cast<float>(random()) / 4294967296.0F - 0.5F);
+    }
+  }
+  EXPECT_EQ(accepted(drive_through(places, unit(query), settings(Use::localise))), 0U);
+  EXPECT_EQ(accepted(drive_through({}, unit(query), settings(Use::close_loops))), 0U);
+}
+
+TEST(PlaceBelief, ACarriedRobotLosesItsBeliefAndFindsItself) {
+  const oracle::Vectors reference = way(7, 2000, 0.5F, 1);
+  const oracle::Vectors same = way(7, 2000, 0.5F, 2);
+  oracle::Vectors query;
+  std::vector<std::size_t> truth;
+  std::mt19937 random(8);
+  for (int jump = 0; jump < 40; ++jump) {
+    const std::size_t start = random() % 1900;
+    for (std::size_t i = 0; i < 60; ++i) {
+      query.push_back(same[start + i]);
+      truth.push_back(start + i);
+    }
+  }
+  const Said said = drive_through(reference, query, settings(Use::localise));
+  expect_each_frame_once(said, query.size());
+  std::size_t wrong = 0;
+  for (const Answer& answer : said.answers) {
+    if (answer.gate != Gate::match) continue;
+    const auto off = static_cast<int>(answer.match->place) - static_cast<int>(truth[answer.frame]);
+    if (std::abs(off) > 10) ++wrong;
+  }
+  EXPECT_LE(wrong, query.size() / 500) << "a frame after being carried, now and then";
+  EXPECT_GT(accepted(said), query.size() / 2);
+}
+
+TEST(PlaceBelief, ACoveredLensSaysNothing) {
+  const oracle::Vectors reference = way(9, 300, 0.5F, 1);
+  oracle::Vectors query = way(9, 300, 0.5F, 2);
+  const std::vector<float> blank(size);
+  query.insert(query.begin() + 150, 1000, blank);
+  const Said said = drive_through(reference, query, settings(Use::localise));
+  expect_each_frame_once(said, query.size());
+  for (std::size_t i = 150; i < 1150; ++i) EXPECT_EQ(said.answers[i].gate, Gate::frame_error);
+  EXPECT_EQ(said.answers[100].gate, Gate::match);
+  EXPECT_EQ(said.answers.back().gate, Gate::match);
+}
+
+TEST(PlaceBelief, AGapIsAGapInTimeAndNotInEvidence) {
+  const oracle::Vectors reference = way(10, 400, 0.5F, 1);
+  const oracle::Vectors query = way(10, 400, 0.5F, 2);
+  const MatcherConfig config = settings(Use::localise);
+  PlaceMap map = map_of(reference, config);
+  Detector detector(config, map);
+  std::size_t after_gaps = 0;
+  std::size_t stepped = 0;
+  std::size_t answered = 0;
+  for (std::size_t i = 0; i < query.size(); ++i) {
+    if (i >= 100 && i % 40 < 6) {
+      detector.skip(1);
+      continue;
+    }
+    const FrameReport report = detector.step(query[i]);
+    ++stepped;
+    answered += report.answers.size();
+    if (i >= 100 && i % 40 == 7 && report.now && report.now->probability > 0.9F) {
+      EXPECT_NEAR(static_cast<double>(report.now->place), static_cast<double>(i), 2.0);
+      ++after_gaps;
+    }
+  }
+  EXPECT_GE(after_gaps, 6U);
+  // A long gap ends what belongs together: all that waits is answered with the next frame.
+  detector.skip(1000);
+  const FrameReport report = detector.step(query.front());
+  answered += report.answers.size();
+  EXPECT_EQ(answered, stepped) << "all but the newest";
+}
+
+TEST(PlaceBelief, PatienceMayBeNoneOrLong) {
+  const oracle::Vectors reference = way(11, 150, 0.5F, 1);
+  const oracle::Vectors query = way(11, 150, 0.5F, 2);
+  for (const std::size_t patience : {0U, 1U, 9U, 10U, 11U, 300U, 1000U}) {
+    MatcherConfig config = settings(Use::localise);
+    config.patience = patience;
+    const Said said = drive_through(reference, query, config);
+    expect_each_frame_once(said, 150);
+    EXPECT_GT(accepted(said), 50U) << patience;
+    for (const FrameReport& report : said.reports) {
+      EXPECT_LE(report.answers.size(), patience + 1);
+    }
+  }
+}
+
+TEST(PlaceBelief, TakesAnything) {
+  const std::vector<float> constant(size, 1.0F / 16.0F);
+  const oracle::Vectors alike(200, constant);
+  EXPECT_EQ(accepted(drive_through(alike, alike, settings(Use::localise))), 0U);
+  EXPECT_EQ(accepted(drive_through({}, alike, settings(Use::close_loops))), 0U);
+  const oracle::Vectors some = way(12, 200, 0.5F, 1);
+  EXPECT_EQ(accepted(drive_through(alike, some, settings(Use::localise))), 0U);
+  const oracle::Vectors nothing(50, std::vector<float>(size, std::nanf("")));
+  const Said said = drive_through(some, nothing, settings(Use::localise));
+  expect_each_frame_once(said, 50);
+  EXPECT_EQ(std::ranges::count(said.answers, Gate::frame_error, &Answer::gate), 50);
+  expect_each_frame_once(drive_through(some, {some[5]}, settings(Use::localise)), 1);
+  expect_each_frame_once(drive_through({some[0]}, some, settings(Use::localise)), 200);
+  MatcherConfig config;
+  for (const float wrong : {0.0F, -1.0F, 1.5F, std::nanf("")}) {
+    config.min_probability = wrong;
+    EXPECT_FALSE(validate(config).empty()) << wrong;
+  }
+  config = {};
+  config.patience = 1001;
+  EXPECT_FALSE(validate(config).empty());
+}
+
+TEST(PlaceBelief, ItsWorkIsBoundedAndInThePlan) {
+  const oracle::Vectors reference = way(13, 5000, 0.5F, 1);
+  const oracle::Vectors query = way(13, 300, 0.5F, 2);
+  const MatcherConfig config = settings(Use::localise);
+  const Work most = Detector::most_work(config, {5000, size});
+  const Said said = drive_through(reference, query, config);
+  EXPECT_LE(said.most.sketches, most.sketches);
+  EXPECT_LE(said.most.scanned, most.scanned);
+  EXPECT_GT(most.sketches, PlaceBelief::most_sketches);
+}
+
+TEST(PlaceBelief, AllMethodsDecideByIt) {
+  const oracle::Vectors reference = way(14, 200, 0.5F, 1);
+  const oracle::Vectors query = way(14, 200, 0.5F, 2);
+  for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
+    for (const bool relocalise : {true, false}) {
+      MatcherConfig config = settings(Use::localise);
+      config.candidates = candidates;
+      config.relocalising.on = relocalise;
+      const Said said = drive_through(reference, query, config);
+      expect_each_frame_once(said, 200);
+      EXPECT_GT(accepted(said), 160U);
+    }
+  }
+}
+
+TEST(PlaceBelief, TwoRunsSayTheSame) {
+  const oracle::Vectors drive = way(15, 400, 0.5F, 1);
+  const Said a = drive_through({}, drive, settings(Use::close_loops));
+  const Said b = drive_through({}, drive, settings(Use::close_loops));
+  for (std::size_t i = 0; i < a.answers.size(); ++i) {
+    EXPECT_EQ(a.answers[i].probability, b.answers[i].probability);
+    EXPECT_EQ(a.answers[i].gate, b.answers[i].gate);
+  }
+}
+
+}  // namespace
+}  // namespace seqloop
