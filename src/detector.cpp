@@ -139,6 +139,11 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   pending_.clear();
+  return take(descriptor);
+}
+
+/// A step whose answers stand beside those of the steps before it.
+FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   const std::uint64_t newest = queries_.frames();
   const bool readable = take_query(descriptor);
   const bool became_place = config_.use == Use::localise || become_place();
@@ -147,27 +152,25 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   return report;
 }
 
-void Detector::steps(std::span<const std::span<const float>> descriptors,
-                     std::span<FrameReport> reports) noexcept {
+std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
+                            std::span<FrameReport> reports) noexcept {
   const bool at_once = config_.candidates == Candidates::all && config_.use == Use::localise &&
                        config_.arithmetic == Arithmetic::int8 && !config_.enhance;
-  const std::size_t count = std::min(descriptors.size(), reports.size());
-  if (!at_once) {
-    for (std::size_t i = 0; i < count; ++i) reports[i] = step(descriptors[i]);
-    return;
-  }
+  const std::size_t count = std::min({descriptors.size(), reports.size(), config_.frames_at_once});
   pending_.clear();
-  for (std::size_t begin = 0; begin < count; begin += config_.frames_at_once) {
-    const std::size_t together = std::min(config_.frames_at_once, count - begin);
-    const std::uint64_t first = queries_.frames();
-    std::array<bool, MatcherConfig::most_frames_at_once> readable;
-    for (std::size_t i = 0; i < together; ++i) readable[i] = take_query(descriptors[begin + i]);
-    slices_.fill_newest(*map_, together);
-    for (std::size_t i = 0; i < together; ++i) {
-      FrameReport& report = reports[begin + i] = answer(first + i, readable[i]);
-      report.work.distances += map_->size();
-    }
+  if (!at_once) {
+    for (std::size_t i = 0; i < count; ++i) reports[i] = take(descriptors[i]);
+    return count;
   }
+  const std::uint64_t first = queries_.frames();
+  std::array<bool, MatcherConfig::most_frames_at_once> readable;
+  for (std::size_t i = 0; i < count; ++i) readable[i] = take_query(descriptors[i]);
+  slices_.fill_newest(*map_, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    reports[i] = answer(first + i, readable[i]);
+    reports[i].work.distances += map_->size();
+  }
+  return count;
 }
 
 /// Answers the frames whose answer is due once the newest has been taken.
@@ -310,7 +313,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
   ranges_.skip(frames);
   proposals_.skip(frames);
   decision_.skip(frames);
-  belief_.pass(frames, 1);
+  if (config_.decision == Decision::probability) belief_.pass(frames, 1);
   change_degree_ = {};
 }
 

@@ -57,24 +57,26 @@ class Detector {
   Detector& operator=(Detector&&) = delete;
   ~Detector() = default;
 
-  /// Takes the next frame and answers for the frame ds - ds/2 before it, the window's centre.
+  /// Takes the next frame, and answers each frame whose one final answer is due: as soon as it is
+  /// sure, or `patience` frames later. By uniqueness that is the window's centre, the frame
+  /// ds - ds/2 before this one.
   /// @param descriptor [D] unit L2, or finite where the difference is mean absolute. If it is
   ///   empty, of another size, neither of these, or blank where `blank_is_unreadable`, the frame
-  ///   could not be read: it counts as one at which the scene stood still, the gate is
-  ///   `frame_error`, and the answer that was due, for the centre frame, is not given.
+  ///   could not be read: it counts as one at which the scene stood still, and its answer is
+  ///   `frame_error`; by uniqueness, that of the centre frame is.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
   /// Takes several frames of a recording: the same answers as by as many steps. Where all rows are
   /// candidates and localising is by `int8`, places are read once for all of these frames, which is
   /// several times faster.
-  /// @param descriptors any number, each as `step` takes it; `MatcherConfig::frames_at_once` of
-  ///   them share a reading of the places
-  /// @param reports     as many, written. Where they are fewer, the frames beyond them are not
-  ///   taken.
+  /// @param descriptors each as `step` takes it
+  /// @param reports     written; their answers stand until the next step
+  /// @return how many frames were taken, the first ones: all, or `MatcherConfig::frames_at_once`,
+  ///   or as many as there are reports
   /// Work: as many steps. Allocates: never.
-  void steps(std::span<const std::span<const float>> descriptors,
-             std::span<FrameReport> reports) noexcept;
+  [[nodiscard]] std::size_t steps(std::span<const std::span<const float>> descriptors,
+                                  std::span<FrameReport> reports) noexcept;
 
   /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds
   /// of them are frames at which the scene stood still, so that trajectories keep their velocities;
@@ -113,6 +115,7 @@ class Detector {
   Detector(Arena arena, const MatcherConfig& config, PlaceMap* map, const Capacity& capacity,
            ArenaMemory&& memory);
 
+  [[nodiscard]] FrameReport take(std::span<const float> descriptor) noexcept;
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
   [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
   void keep_lines(const BestRow& best, std::uint64_t centre) noexcept;

@@ -100,7 +100,7 @@ struct MatcherConfig {
   std::size_t exclude = 100;           ///< closing loops: newest frames that are no places; >= 1
   FullMap full_map = FullMap::refuse;  ///< closing loops: what a full map does
   Standardisation standardisation{};
-  /// Frames for which `Detector::steps` reads the places once; 1 .. most_frames_at_once. Each
+  /// Frames that `Detector::steps` takes, reading the places once; 1 .. most_frames_at_once. Each
   /// beyond the first keeps a column of differences and a descriptor more.
   std::size_t frames_at_once = 1;
   static constexpr std::size_t most_frames_at_once = 64;

@@ -38,6 +38,7 @@ struct Drive {
 
 Drive any_drive(Chance& chance) {
   MatcherConfig config;
+  config.decision = Decision::uniqueness;
   config.candidates = chance.one_of({Candidates::all, Candidates::ranges, Candidates::adaptive});
   config.use = chance.one_of({Use::localise, Use::close_loops});
   config.arithmetic = chance.one_of({Arithmetic::float32, Arithmetic::int8, Arithmetic::sketch});

@@ -201,6 +201,7 @@ TEST_P(Carried, IsFoundAgainSoonAtAnySpeed) {
     for (const auto& [vmin, vmax, speed] : {std::tuple{0.8, 1.2, 1.0}, std::tuple{0.8, 1.2, 0.8},
                                             std::tuple{0.0, 3.0, 0.0}, std::tuple{0.0, 3.0, 3.0}}) {
       MatcherConfig config;
+      config.decision = Decision::uniqueness;
       config.candidates = GetParam();
       config.vmin = vmin;
       config.vmax = vmax;
@@ -233,6 +234,7 @@ TEST_P(Carried, IsFoundWhereNeighboursAreNothingAlike) {
   for (const auto& [vmin, vmax, speed] :
        {std::tuple{0.8, 1.2, 1U}, std::tuple{0.0, 3.0, 1U}, std::tuple{0.0, 3.0, 3U}}) {
     MatcherConfig config;
+    config.decision = Decision::uniqueness;
     config.candidates = GetParam();
     config.vmin = vmin;
     config.vmax = vmax;

@@ -252,7 +252,7 @@ TEST(Detector, SeveralFramesAtOnceAreAsManySteps) {
             const std::vector<std::span<const float>> frames(
                 query.begin() + static_cast<std::ptrdiff_t>(first),
                 query.begin() + static_cast<std::ptrdiff_t>(first + count));
-            detector.steps(frames, std::span(given).subspan(first, count));
+            ASSERT_EQ(detector.steps(frames, std::span(given).subspan(first, count)), count);
             first += count;
           }
           for (std::size_t frame = 0; frame < query.size(); ++frame) {
@@ -266,7 +266,7 @@ TEST(Detector, SeveralFramesAtOnceAreAsManySteps) {
   }
 }
 
-TEST(Detector, TakesMoreFramesThanItReadsPlacesForAtOnce) {
+TEST(Detector, TakesNoMoreFramesAtOnceThanItHasRoomFor) {
   const oracle::Vectors reference = oracle::drive(9, 150, 40);
   const oracle::Vectors query = oracle::drive(9, 140, 40, 0.3F);
   const std::vector<std::span<const float>> frames(query.begin(), query.end());
@@ -281,14 +281,79 @@ TEST(Detector, TakesMoreFramesThanItReadsPlacesForAtOnce) {
       PlaceMap map = map_of(reference, config);
       Detector detector(config, map);
       std::vector<FrameReport> given(reports_given);
-      detector.steps(frames, given);
-      for (std::size_t frame = 0; frame < given.size(); ++frame) {
+      const std::size_t taken = detector.steps(frames, given);
+      EXPECT_EQ(taken, std::min(at_once, reports_given));
+      for (std::size_t frame = 0; frame < taken; ++frame) {
         expect_same_answer(given[frame], wanted[frame]);
         EXPECT_EQ(given[frame].work, wanted[frame].work) << frame;
       }
-      EXPECT_EQ(detector.step(query[0]).newest, reports_given) << "none was taken without a report";
+      EXPECT_EQ(detector.step(query[0]).newest, taken);
     }
   }
+}
+
+void append(std::vector<Answer>& all, std::span<const Answer> more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+TEST(Detector, AnswersOfSeveralFramesAreThoseOfAsManySteps) {
+  const oracle::Vectors reference = oracle::drive(9, 300, 40);
+  oracle::Vectors query = oracle::drive(9, 260, 40, 0.3F);
+  query[77].clear();
+  for (const Decision decision : {Decision::probability, Decision::uniqueness}) {
+    for (const Candidates candidates : {Candidates::all, Candidates::adaptive}) {
+      MatcherConfig config;
+      config.decision = decision;
+      config.candidates = candidates;
+      config.frames_at_once = 64;
+      PlaceMap map = map_of(reference, config);
+      Detector by_one(config, map);
+      Detector by_many(config, map);
+      std::vector<Answer> wanted;
+      std::vector<Answer> given;
+      for (const auto& descriptor : query) append(wanted, by_one.step(descriptor).answers);
+      append(wanted, by_one.finish());
+      std::vector<FrameReport> reports(config.frames_at_once);
+      for (std::size_t first = 0; first < query.size(); first += reports.size()) {
+        const std::vector<std::span<const float>> frames(
+            query.begin() + static_cast<std::ptrdiff_t>(first),
+            query.begin() +
+                static_cast<std::ptrdiff_t>(std::min(first + reports.size(), query.size())));
+        ASSERT_EQ(by_many.steps(frames, reports), frames.size());
+        for (std::size_t i = 0; i < frames.size(); ++i) append(given, reports[i].answers);
+      }
+      append(given, by_many.finish());
+      ASSERT_EQ(given.size(), wanted.size());
+      EXPECT_GE(given.size(), decision == Decision::probability ? query.size() : 230U);
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        EXPECT_EQ(given[i].frame, wanted[i].frame);
+        EXPECT_EQ(given[i].gate, wanted[i].gate);
+        EXPECT_EQ(given[i].match.has_value(), wanted[i].match.has_value());
+      }
+    }
+  }
+}
+
+TEST(Detector, ByUniquenessTheCentreFrameIsTheOneAnswer) {
+  const oracle::Vectors drive = oracle::drive(2, 120, 30);
+  for (const FrameReport& report : reports(drive, drive, paper(Candidates::all, 10))) {
+    EXPECT_EQ(report.answers.size(), report.newest < 10 ? 0U : 1U);
+    EXPECT_FALSE(report.now);
+  }
+  PlaceMap map = map_of(drive, paper(Candidates::all, 10));
+  Detector detector(paper(Candidates::all, 10), map);
+  for (const auto& descriptor : drive) {
+    const FrameReport report = detector.step(descriptor);
+    if (report.answers.empty()) continue;
+    const Answer& answer = report.answers.front();
+    EXPECT_EQ(answer.frame, *report.frame);
+    EXPECT_EQ(answer.gate, report.gate);
+    EXPECT_TRUE(std::isnan(answer.probability));
+    ASSERT_EQ(answer.match.has_value(), report.match.has_value());
+    if (!answer.match) continue;
+    EXPECT_EQ(answer.match->place, report.match->place);
+  }
+  EXPECT_TRUE(detector.finish().empty());
 }
 
 TEST(Detector, SameInputSameReports) {

@@ -60,7 +60,7 @@ void match_all(Detector& detector, const Drive& drive) {
   for (std::size_t first = 0; first < drive.frames(); first += frames_at_once) {
     const std::size_t count = std::min(frames_at_once, drive.frames() - first);
     for (std::size_t i = 0; i < count; ++i) frames[i] = drive.frame(first + i);
-    detector.steps(std::span(frames).first(count), reports);
+    static_cast<void>(detector.steps(std::span(frames).first(count), reports));
   }
 }
 
