@@ -69,16 +69,17 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
   const bool known = oldest.believed && oldest.frame == newest - (length - 1) && oldest.asked > 1 &&
                      distance(oldest.row, trace_[length - 1].row) <= own;
   const double off = known ? 1.0 - logistic(oldest.odds) * oldest.on : 1.0;
-  const double usual = belief.usual_gain();
+  const double usual = exponential(-belief.usual_gain());
   double said = 0.0;
-  double above = 0.0;
+  double unusual = 1.0;
   double entered = 0.0;  // at any frame
   double gone = 0.0;
   for (std::size_t back = 0; back < length; ++back) {
     said += trace_[back].gain;
-    above += trace_[back].gain - usual;
-    weights_[back] = {(back + 1 == length ? 1.0 : begins * off) * exponential(above),
-                      ends * exponential(-said)};
+    unusual *= usual;
+    const double likelier = exponential(said);
+    weights_[back] = {(back + 1 == length ? 1.0 : begins * off) * likelier * unusual,
+                      ends / likelier};
     entered += weights_[back].entered;
     gone += weights_[back].gone;
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "seqloop/detail/portable_math.hpp"
@@ -109,12 +111,16 @@ std::optional<PlaceBelief::Scene> PlaceBelief::look_around(const View& view) noe
   const double spread =
       std::max(variance - chance / scanned_bits, least_deviation * least_deviation);
   const double scanned = std::sqrt(spread + chance / scanned_bits);
+  // The mean of e^z, which from one count of bits to the next falls by the same share.
+  const auto likest = static_cast<std::size_t>(std::distance(
+      histogram_.begin(), std::ranges::find_if(histogram_, [](std::uint32_t c) { return c > 0; })));
+  const double falls = exponential(-1.0 / (scanned_bits * scanned));
+  double power = exponential((mean - static_cast<double>(likest) / scanned_bits) / scanned);
+  constexpr double highest = 160'000.0;  // about e^12: a few rows alike are no sign of the rest
   double exponentials = 0.0;
-  for (std::size_t b = 0; b < histogram_.size(); ++b) {
-    if (histogram_[b] == 0) continue;
-    const double z = (mean - static_cast<double>(b) / scanned_bits) / scanned;
-    constexpr double highest = 12.0;
-    exponentials += static_cast<double>(histogram_[b]) * exponential(std::min(z, highest));
+  for (std::size_t b = likest; b < histogram_.size(); ++b) {
+    exponentials += static_cast<double>(histogram_[b]) * std::min(power, highest);
+    power *= falls;
   }
   constexpr double above = 0.55;
   return Scene{mean, std::sqrt(spread + chance / close_bits), logarithm(exponentials / n) + above,
@@ -179,26 +185,31 @@ void PlaceBelief::move(std::span<const double> kernel) noexcept {
     moved.mass = mass;
     moved_[moved_count_++] = moved;
   }
-  // Keep the likeliest, and their order.
-  if (moved_count_ > old_most) {
-    const auto likelier = [](const Hypothesis& a, const Hypothesis& b) {
-      return a.mass != b.mass ? a.mass > b.mass : a.row < b.row;
-    };
-    const auto begin = moved_.begin();
-    const auto end = begin + static_cast<std::ptrdiff_t>(moved_count_);
-    std::nth_element(begin, begin + old_most, end, likelier);
-    moved_count_ = old_most;
+  if (moved_count_ <= old_most) return;
+  // Keep the likeliest; of equals the first.
+  std::array<double, 3 * most> masses;
+  for (std::size_t i = 0; i < moved_count_; ++i) masses[i] = moved_[i].mass;
+  const auto last = masses.begin() + old_most - 1;
+  std::nth_element(masses.begin(), last, masses.begin() + static_cast<std::ptrdiff_t>(moved_count_),
+                   std::greater<>());
+  const double least = *last;
+  std::size_t equals =
+      static_cast<std::size_t>(std::count(masses.begin(), masses.begin() + old_most, least));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < moved_count_; ++i) {
+    if (moved_[i].mass < least || (moved_[i].mass == least && equals == 0)) continue;
+    if (moved_[i].mass == least) --equals;
+    moved_[kept++] = moved_[i];
   }
-  std::ranges::sort(moved_.first(moved_count_), {}, &Hypothesis::row);
+  moved_count_ = kept;
 }
 
 void PlaceBelief::give_birth(const View& view, double mass) noexcept {
   // The rows beyond those that may be searched are gone.
   while (moved_count_ > 0 && moved_[moved_count_ - 1].row >= view.rows) --moved_count_;
   if (mass <= 0.0) return;
-  const std::size_t old = moved_count_;
   for (const CandidateProposals::Alike& found : view.seen->found()) {
-    const auto known = moved_.first(old);
+    const auto known = moved_.first(moved_count_);
     const auto place = std::ranges::lower_bound(known, found.row, {}, &Hypothesis::row);
     if (place != known.end() && place->row == found.row) {
       const double share = place->mass / (place->mass + mass);
@@ -208,9 +219,10 @@ void PlaceBelief::give_birth(const View& view, double mass) noexcept {
       place->age *= share;
       continue;
     }
-    moved_[moved_count_++] = {found.row, mass, 0.0, -10.0, 0.0, 0.0, no_parent};
+    std::move_backward(place, known.end(), known.end() + 1);
+    *place = {found.row, mass, 0.0, -10.0, 0.0, 0.0, no_parent};
+    ++moved_count_;
   }
-  std::ranges::sort(moved_.first(moved_count_), {}, &Hypothesis::row);
 }
 
 double PlaceBelief::share(const View& view, std::uint64_t frame, std::size_t row) noexcept {
@@ -268,11 +280,12 @@ void PlaceBelief::sharpen(const Scene& scene, std::span<const double> gains) noe
     sharp[i] = rows_[i].mass * exponential(weight * gains[i]);
   }
   std::array<double, most> result{};
+  std::size_t first = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     double before = 0.0;
     double after = 0.0;
-    for (std::size_t j = 0; j < count_; ++j) {
-      if (distance(rows_[j].row, rows_[i].row) > near) continue;
+    while (rows_[first].row + near < rows_[i].row) ++first;
+    for (std::size_t j = first; j < count_ && rows_[j].row <= rows_[i].row + near; ++j) {
       before += rows_[j].mass;
       after += sharp[j];
     }
