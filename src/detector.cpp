@@ -197,7 +197,8 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   if (readable) pending_.believe(belief_, *map_, report.newest);
   pending_.answer(belief_, *map_, report.newest, window_began_);
   const std::span<const Answer> answers = pending_.answers().subspan(before);
-  report.gate = readable ? Gate::warming_up : Gate::frame_error;
+  const bool whole = report.newest >= window_began_ + config_.sequence_length;
+  report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
   report.frame.reset();
   report.match.reset();
   if (!answers.empty()) {

@@ -11,6 +11,8 @@ std::string_view name(Gate gate) noexcept {
       return "frame_error";
     case Gate::warming_up:
       return "warming_up";
+    case Gate::waiting:
+      return "waiting";
     case Gate::no_candidate:
       return "no_candidate";
     case Gate::not_unique:

@@ -13,7 +13,8 @@ namespace seqloop {
 enum class Gate : std::uint8_t {
   no_frame,      ///< a live source brought no frame in time, or lost its camera
   frame_error,   ///< the newest frame could not be read or described
-  warming_up,    ///< no answer is due yet: too few frames have been seen
+  warming_up,    ///< no answer is due yet: fewer than ds + 1 frames have been seen
+  waiting,       ///< no answer is due: the frames that wait for theirs are not sure yet
   no_candidate,  ///< no line fits into the rows that may be searched
   not_unique,    ///< `Decision::uniqueness`: another row stands out nearly as much as the best
   new_place,     ///< the robot is somewhere new, for all that is known
@@ -22,7 +23,7 @@ enum class Gate : std::uint8_t {
 };
 
 /// How many gates there are.
-inline constexpr std::size_t gates = 8;
+inline constexpr std::size_t gates = 9;
 
 /// `no_frame`, `frame_error`, ...
 [[nodiscard]] std::string_view name(Gate gate) noexcept;
@@ -78,7 +79,7 @@ struct FrameReport {
   std::uint64_t newest = 0;  ///< the frame that was stepped, from 0
   /// The last of `answers`, where there are any; then its gate and match.
   std::optional<std::uint64_t> frame;
-  Gate gate = Gate::frame_error;  ///< without an answer `warming_up`, or `frame_error`
+  Gate gate = Gate::frame_error;  ///< without an answer `warming_up`, `waiting`, or `frame_error`
   std::optional<Match> match;
   std::size_t k = 0;         ///< K in force for this frame; 0 where all rows are candidates
   bool full_search = false;  ///< whether all rows were candidates

@@ -29,6 +29,11 @@ class Run : public test::Program {
     return all;
   }
 
+  /// A file that holds one JSON object.
+  [[nodiscard]] nlohmann::json json_of(const std::string& name) const {
+    return nlohmann::json::parse(test::read_all(file(name)));
+  }
+
   /// The match list in m.csv against the oracle's.
   void expect_list(const std::vector<oracle::Answer>& wanted) const {
     const auto table = evaluation::CsvTable::read(file("m.csv"));
@@ -170,8 +175,9 @@ TEST_F(Run, SeqSlamTakesPatchesAsTheyAreAndEnhances) {
     for (const bool closing : {false, true}) {
       config.enhance = enhance;
       config.exclude = 20;
-      expect_done(std::string("match --method seqslam --exclude 20 --query q.npy --out m.csv") +
-                  (enhance ? "" : " --enhance off") + (closing ? "" : " --reference r.npy"));
+      expect_done(std::string("match --method seqslam --decide-by uniqueness --exclude 20 ") +
+                  "--query q.npy --out m.csv" + (enhance ? "" : " --enhance off") +
+                  (closing ? "" : " --reference r.npy"));
       expect_list(oracle::match(closing ? oracle::Vectors{} : reference, query, config));
     }
   }
@@ -284,8 +290,9 @@ TEST_F(Run, SaysThatADriveHasNothingToRecogniseAPlaceBy) {
 TEST_F(Run, RunAgreesWithMatchAndCountsItsFrames) {
   write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
   write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));
-  expect_done("match --method o-seqcnnslam --reference r.npy --query q.npy --out m.csv");
-  const auto outcome = expect_done("run --reference r.npy --source q.npy --out r.jsonl");
+  const std::string by = " --decide-by uniqueness";
+  expect_done("match --method o-seqcnnslam --reference r.npy --query q.npy --out m.csv" + by);
+  const auto outcome = expect_done("run --reference r.npy --source q.npy --out r.jsonl" + by);
   EXPECT_NE(outcome.err.find("110 frames:"), std::string::npos) << outcome.err;
   for (const char* word : {"p50", "p99", "max", "grab", "describe", "match", "total", "dropped"}) {
     EXPECT_NE(outcome.err.find(word), std::string::npos) << word;
@@ -307,9 +314,148 @@ TEST_F(Run, RunAgreesWithMatchAndCountsItsFrames) {
     EXPECT_EQ(line["match"], table.whole(row, 1));
     EXPECT_NEAR(line["score"].get<double>(), table.number(row, 2), 1e-8);
     EXPECT_EQ(line["distances"], table.whole(row, 8));
+    EXPECT_TRUE(line["probability"].is_null());
+    EXPECT_TRUE(line["now"].is_null());
+    EXPECT_EQ(line["answers"].size(), 1U);
+    EXPECT_EQ(line["status"] == "match", table.flag(row, table.column("accepted")));
+    EXPECT_TRUE(std::isnan(table.number(row, table.column("probability"))));
     ++row;
   }
   EXPECT_EQ(row, table.rows());
+  EXPECT_EQ(row, 90U);
+}
+
+TEST_F(Run, EveryFrameHasOneFinalAnswer) {
+  write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
+  write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));
+  for (const std::string flags : {"", " --patience 0", " --patience 1000", " --frames 47",
+                                  " --method seqcnnslam", " --method single"}) {
+    SCOPED_TRACE(flags);
+    const auto outcome =
+        expect_done("run --reference r.npy --source q.npy --out r.jsonl --summary s.json" + flags);
+    const std::size_t frames = flags == " --frames 47" ? 47 : 110;
+    const auto all = lines("r.jsonl");
+    ASSERT_EQ(all.size(), frames) << "a line is a frame, whatever waited at the end";
+    std::vector<nlohmann::json> answers(frames);
+    std::map<std::string, std::size_t> gates;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const nlohmann::json& line = all[i];
+      EXPECT_EQ(line["newest"], i);
+      for (const char* key : {"place", "probability", "new_place"}) {
+        if (!line["now"].is_null()) {
+          EXPECT_TRUE(line["now"].contains(key)) << key;
+        }
+      }
+      if (line["answers"].empty()) {
+        EXPECT_TRUE(line["status"] == "warming_up" || line["status"] == "waiting");
+        for (const char* key : {"frame", "match", "probability"}) EXPECT_TRUE(line[key].is_null());
+        continue;
+      }
+      for (const auto& [key, value] : line["answers"].back().items()) {
+        EXPECT_EQ(line[key], value) << "the last one stands beside the others";
+      }
+      std::size_t before = 0;
+      for (const nlohmann::json& answer : line["answers"]) {
+        const auto frame = answer["frame"].get<std::size_t>();
+        ASSERT_LE(frame, i);
+        EXPECT_GE(frame, before) << "in order";
+        EXPECT_TRUE(answers[frame].is_null()) << "once";
+        answers[frame] = answer;
+        before = frame;
+        ++gates[answer["status"]];
+        EXPECT_EQ(answer.size(), 8U);
+        const auto probability = answer["probability"].get<double>();
+        EXPECT_EQ(answer["status"] == "match", probability >= 0.99 && !answer["match"].is_null());
+      }
+    }
+    EXPECT_EQ(std::ranges::count(answers, nlohmann::json()), 0);
+    for (const auto& [gate, count] : json_of("s.json")["gates"].items()) {
+      EXPECT_EQ(count, gates[gate]) << gate;
+    }
+    EXPECT_GT(gates["match"], 20U) << outcome.err;
+    EXPECT_NE(outcome.err.find(std::to_string(gates["match"]) + " match"), std::string::npos);
+    if (flags == " --frames 47") continue;
+
+    // The match list says the same.
+    expect_done("match --reference r.npy --query q.npy --out m.csv" + flags);
+    const auto table = evaluation::CsvTable::read(file("m.csv"));
+    std::size_t row = 0;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+      const nlohmann::json& answer = answers[frame];
+      if (answer["match"].is_null()) continue;
+      ASSERT_LT(row, table.rows());
+      EXPECT_EQ(table.whole(row, table.column("query")), frame);
+      EXPECT_EQ(table.whole(row, table.column("match")), answer["match"]);
+      EXPECT_EQ(table.whole(row, table.column("head")), answer["head"]);
+      EXPECT_NEAR(table.number(row, table.column("probability")),
+                  answer["probability"].get<double>(), 1e-8);
+      EXPECT_EQ(table.flag(row, table.column("accepted")), answer["status"] == "match");
+      ++row;
+    }
+    EXPECT_EQ(row, table.rows());
+  }
+}
+
+TEST_F(Run, TheMatchListAcceptsByWhatDecides) {
+  write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
+  write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));
+  const auto list = [&](const std::string& flags) {
+    expect_done("match --reference r.npy --query q.npy --out m.csv " + flags);
+    EXPECT_TRUE(test::read_all(file("m.csv"))
+                    .starts_with("query,match,score,uniqueness,velocity,head,candidates,k,"
+                                 "distances,probability,accepted\n"));
+    return evaluation::CsvTable::read(file("m.csv"));
+  };
+  for (const std::string flags :
+       {"--paper", "--decide-by uniqueness", "--paper --max-uniqueness 0.8"}) {
+    const auto table = list(flags);
+    const double most = flags.ends_with("0.8") ? 0.8 : 0.94;
+    EXPECT_EQ(table.rows(), 90U) << "the window's half on either side has no answer";
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      EXPECT_TRUE(std::isnan(table.number(row, table.column("probability"))));
+      EXPECT_EQ(table.flag(row, table.column("accepted")),
+                table.number(row, table.column("uniqueness")) <= most);
+    }
+  }
+  std::size_t before = 111;
+  for (const std::string least : {"1e-9", "0.5", "0.99", "1"}) {
+    const auto table = list("--min-probability " + least);
+    EXPECT_GT(table.rows(), 90U) << "edges have answers";
+    std::size_t accepted = 0;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const bool sure = table.number(row, table.column("probability")) >= std::stod(least);
+      EXPECT_EQ(table.flag(row, table.column("accepted")), sure) << least;
+      accepted += sure;
+    }
+    EXPECT_LT(accepted, before) << "the more sure, the fewer";
+    before = accepted;
+  }
+  EXPECT_LT(before, 111U);
+  const auto by_default = test::read_all(file("m.csv"));
+  list("--paper --decide-by probability");
+  EXPECT_NE(by_default, test::read_all(file("m.csv")));
+}
+
+TEST_F(Run, PlacesOfAMapThatForgetsAreNamedAlikeByRunAndMatch) {
+  oracle::Vectors laps = oracle::drive(6, 150, 20, 0.2F);
+  for (int lap = 0; lap < 3; ++lap) {
+    const oracle::Vectors more = oracle::drive(6, 150, 20, 0.3F);
+    laps.insert(laps.end(), more.begin(), more.end());
+  }
+  write_npy("q.npy", laps);
+  for (const std::string full_map : {"forget-oldest", "thin"}) {
+    expect_done(
+        "run --source q.npy --max-places 200 --out r.jsonl --decide-by uniqueness "
+        "--full-map " +
+        full_map);
+    std::size_t beyond = 0;
+    for (const auto& line : lines("r.jsonl")) {
+      if (line["match"].is_null()) continue;
+      EXPECT_LT(line["match"], line["frame"]);
+      beyond += line["match"] > 200 ? 1U : 0U;
+    }
+    EXPECT_GT(beyond, 100U) << "numbers go on where the room ends";
+  }
 }
 
 TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {

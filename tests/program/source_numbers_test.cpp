@@ -3,8 +3,35 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "core/oracle.hpp"
+#include "seqloop/detector.hpp"
+
 namespace seqloop::program {
 namespace {
+
+MatcherConfig config(std::size_t patience = 3) {
+  MatcherConfig config;
+  config.sequence_length = 4;
+  config.patience = patience;
+  return config;
+}
+
+/// A map that has taken frames, each with a descriptor of its own, and may have forgotten some.
+PlaceMap map_of(std::size_t capacity, std::size_t frames, FullMap full_map = FullMap::refuse) {
+  constexpr std::size_t size = 16;
+  MatcherConfig closing = config();
+  closing.use = Use::close_loops;
+  closing.exclude = 1;
+  closing.full_map = full_map;
+  PlaceMap map(closing, {capacity, size});
+  Detector detector(closing, map);
+  for (const auto& descriptor : oracle::drive(1, frames, size)) {
+    static_cast<void>(detector.step(descriptor));
+  }
+  return map;
+}
 
 ProcessedFrame processed(std::uint64_t index, std::uint64_t counted) {
   ProcessedFrame frame;
@@ -16,21 +43,33 @@ ProcessedFrame processed(std::uint64_t index, std::uint64_t counted) {
 }
 
 TEST(SourceNumbers, AreTheDetectorsOwnWhereNothingIsMissing) {
-  SourceNumbers numbers(5, 100);
-  for (std::size_t i = 0; i < 50; ++i) {
-    ProcessedFrame frame = processed(i, i);
-    if (i >= 10) frame.report.match = Match{.place = i - 10, .head = i - 8};
-    numbers.rename(frame);
-    EXPECT_EQ(frame.report.newest, i);
-    if (i < 10) continue;
-    EXPECT_EQ(frame.report.frame, i - 2);
-    EXPECT_EQ(frame.report.match->place, i - 10);
-    EXPECT_EQ(frame.report.match->head, i - 8);
-  }
+  const PlaceMap map = map_of(100, 50);
+  SourceNumbers numbers(config(), &map);
+  ProcessedFrame first = processed(49, 49);  // all 50 came at once
+  numbers.rename(first);
+  ProcessedFrame frame = processed(50, 50);
+  frame.report.match = Match{.place = 10, .head = 12};
+  const std::array answers{Answer{.frame = 46, .match = Match{.place = 9, .head = 11}},
+                           Answer{.frame = 50}};
+  frame.report.answers = answers;
+  frame.report.now = Belief{.place = 14};
+  numbers.rename(frame);
+  EXPECT_EQ(frame.report.newest, 50U);
+  EXPECT_EQ(frame.report.frame, 48U);
+  EXPECT_EQ(frame.report.match->place, 10U);
+  EXPECT_EQ(frame.report.match->head, 12U);
+  ASSERT_EQ(frame.report.answers.size(), 2U);
+  EXPECT_EQ(frame.report.answers[0].frame, 46U);
+  EXPECT_EQ(frame.report.answers[0].match->place, 9U);
+  EXPECT_EQ(frame.report.answers[0].match->head, 11U);
+  EXPECT_EQ(frame.report.answers[1].frame, 50U);
+  EXPECT_FALSE(frame.report.answers[1].match);
+  EXPECT_EQ(frame.report.now->place, 14U);
 }
 
 TEST(SourceNumbers, CountShortGapsAndLongOnes) {
-  SourceNumbers numbers(5, 100);
+  const PlaceMap map = map_of(100, 5);
+  SourceNumbers numbers(config(), &map);
   ProcessedFrame first = processed(7, 0);  // a live source that was late
   numbers.rename(first);
   EXPECT_EQ(first.report.newest, 7U);
@@ -39,24 +78,79 @@ TEST(SourceNumbers, CountShortGapsAndLongOnes) {
   EXPECT_EQ(second.report.newest, 10U);
   EXPECT_EQ(second.report.frame, 8U);
   ProcessedFrame third = processed(500, 4);  // the detector left the gap out
-  third.report.match = Match{.place = 1, .head = 3};
+  third.report.match = Match{.place = 1, .head = 4};
+  const std::array answers{Answer{.frame = 0}, Answer{.frame = 3}, Answer{.frame = 4}};
+  third.report.answers = answers;
+  third.report.now = Belief{.place = 4};
   numbers.rename(third);
   EXPECT_EQ(third.report.newest, 500U);
   EXPECT_EQ(third.report.frame, 9U);
+  EXPECT_EQ(third.report.answers[0].frame, 7U);
+  EXPECT_EQ(third.report.answers[1].frame, 10U);
+  EXPECT_EQ(third.report.answers[2].frame, 500U);
   EXPECT_EQ(third.report.match->place, 8U);
-  EXPECT_EQ(third.report.match->head, 10U);
+  EXPECT_EQ(third.report.match->head, 500U);
+  EXPECT_EQ(third.report.now->place, 500U);
+  const std::array rest{Answer{.frame = 2}, Answer{.frame = 4, .match = Match{.place = 3}}};
+  const std::span<const Answer> renamed = numbers.rename(rest);
+  EXPECT_EQ(renamed[0].frame, 9U);
+  EXPECT_EQ(renamed[1].frame, 500U);
+  EXPECT_EQ(renamed[1].match->place, 10U);
+}
+
+TEST(SourceNumbers, ReachBackAsFarAsAFrameMayWait) {
+  for (const std::size_t patience : {0U, 1U, 30U, 1000U}) {
+    SourceNumbers numbers(config(patience), nullptr);
+    for (std::uint64_t counted = 0; counted < 2000; ++counted) {
+      ProcessedFrame frame = processed(2 * counted, counted);
+      // As many may be skipped, just before this one, as the window is long.
+      const std::uint64_t back = std::min<std::uint64_t>(counted, patience + 5);
+      const std::array answers{Answer{.frame = counted - back}, Answer{.frame = counted}};
+      frame.report.answers = answers;
+      numbers.rename(frame);
+      ASSERT_EQ(frame.report.answers[0].frame, 2 * (counted - back));
+      ASSERT_EQ(frame.report.answers[1].frame, 2 * counted);
+    }
+  }
+}
+
+// Places that are in the map keep their numbers, whatever has gone.
+TEST(SourceNumbers, OfAMapThatForgets) {
+  for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+    constexpr std::size_t size = 16;
+    MatcherConfig closing = config();
+    closing.use = Use::close_loops;
+    closing.exclude = 1;
+    closing.full_map = full_map;
+    PlaceMap map(closing, {30, size});
+    Detector detector(closing, map);
+    SourceNumbers numbers(closing, &map);
+    std::uint64_t counted = 0;
+    for (const auto& descriptor : oracle::drive(1, 500, size)) {
+      static_cast<void>(detector.step(descriptor));
+      ProcessedFrame frame = processed(counted + 1000, counted);
+      const std::uint64_t place = map.order().number((counted * 7) % map.size());
+      frame.report.match = Match{.place = place, .head = place};
+      numbers.rename(frame);
+      ASSERT_EQ(frame.report.match->place, place + 1000);
+      ++counted;
+    }
+  }
 }
 
 TEST(SourceNumbers, LeaveAnotherDrivesPlacesAlone) {
-  SourceNumbers numbers(5, 0);
+  SourceNumbers numbers(config(), nullptr);
   ProcessedFrame frame = processed(90, 0);
   frame.report.match = Match{.place = 1234, .head = 1236};
+  frame.report.now = Belief{.place = 77};
   numbers.rename(frame);
   EXPECT_EQ(frame.report.match->place, 1234U);
+  EXPECT_EQ(frame.report.now->place, 77U);
 }
 
 TEST(SourceNumbers, AnEventIsNoFrame) {
-  SourceNumbers numbers(5, 10);
+  const PlaceMap map = map_of(10, 1);
+  SourceNumbers numbers(config(), &map);
   ProcessedFrame nothing;
   nothing.report.gate = Gate::no_frame;
   numbers.rename(nothing);

@@ -70,10 +70,12 @@ void DrivenDetector::step() noexcept {
   distances_ += report.work.distances;
   scanned_ += report.work.scanned;
   sketches_ += report.work.sketches;
-  if (report.gate != Gate::match) return;
-  constexpr double tolerance = 5.0;
-  const double place = static_cast<double>(report.match->place);
-  found_ += std::abs(place - positions_[static_cast<std::size_t>(*report.frame)]) <= tolerance;
+  for (const Answer& answer : report.answers) {
+    if (answer.gate != Gate::match) continue;
+    constexpr double tolerance = 5.0;
+    const double place = static_cast<double>(answer.match->place);
+    found_ += std::abs(place - positions_[static_cast<std::size_t>(answer.frame)]) <= tolerance;
+  }
 }
 
 std::uint64_t DrivenDetector::bytes_a_step() const noexcept {

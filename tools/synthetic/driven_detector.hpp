@@ -36,7 +36,7 @@ class DrivenDetector {
 
   /// Of descriptors and sketches, that a step has read on average.
   [[nodiscard]] std::uint64_t bytes_a_step() const noexcept;
-  /// Of the frames, the share that was matched with a place within five of where they were.
+  /// Of the frames, the share whose accepted answer is a place within five of where they were.
   [[nodiscard]] double found() const noexcept;
 
  private:

@@ -2,7 +2,7 @@
 #include "experiment/run/matched_run.hpp"
 
 #include <chrono>
-#include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,19 +15,28 @@
 namespace seqloop::experiment {
 namespace {
 
-// The detector does not say yet how probable an answer is.
-constexpr double probability = std::numeric_limits<double>::quiet_NaN();
-
-double swept(evaluation::ThresholdOn threshold_on, const Match& match) {
+double swept(evaluation::ThresholdOn threshold_on, const Answer& answer) {
   switch (threshold_on) {
     case evaluation::ThresholdOn::score:
-      return static_cast<double>(match.score);
+      return static_cast<double>(answer.match->score);
     case evaluation::ThresholdOn::probability:
-      return probability;
+      return static_cast<double>(answer.probability);
     case evaluation::ThresholdOn::uniqueness:
       break;
   }
-  return static_cast<double>(match.uniqueness);
+  return static_cast<double>(answer.match->uniqueness);
+}
+
+void add(std::vector<evaluation::Answer>& all, std::span<const Answer> answers,
+         evaluation::ThresholdOn threshold_on) {
+  for (const Answer& answer : answers) {
+    if (!answer.match) continue;
+    all.push_back({.query = answer.frame,
+                   .match = answer.match->place,
+                   .uncertainty = uncertainty(threshold_on, swept(threshold_on, answer)),
+                   .probability = static_cast<double>(answer.probability),
+                   .accepted = answer.gate == Gate::match});
+  }
 }
 
 }  // namespace
@@ -61,14 +70,9 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
     }
     if (report.work.candidates > 0) ++searched;
     run.candidates += static_cast<double>(report.work.candidates);
-    if (!report.match) continue;
-    run.answers.push_back(
-        {.query = *report.frame,
-         .match = report.match->place,
-         .uncertainty = uncertainty(threshold_on, swept(threshold_on, *report.match)),
-         .probability = probability,
-         .accepted = report.gate == Gate::match});
+    add(run.answers, report.answers, threshold_on);
   }
+  add(run.answers, detector.finish(), threshold_on);
   run.distances /= static_cast<double>(query.rows);
   if (searched > 0) run.candidates /= static_cast<double>(searched);
   if (with_matrix) run.matrix_png = recorder.png();

@@ -63,6 +63,7 @@ void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::
     if (frame == places / 2) detector.skip(1);
   }
   static_cast<void>(detector.step({}));
+  static_cast<void>(detector.finish());
 }
 
 }  // namespace

@@ -49,6 +49,12 @@ Difference parse_difference(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is neither euclidean nor mean-absolute");
 }
 
+Decision parse_decision(std::string_view text) {
+  if (text == "probability") return Decision::probability;
+  if (text == "uniqueness") return Decision::uniqueness;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither probability nor uniqueness");
+}
+
 Arithmetic parse_arithmetic(std::string_view text) {
   if (text == "float") return Arithmetic::float32;
   if (text == "int8") return Arithmetic::int8;
@@ -61,6 +67,31 @@ FullMap parse_full_map(std::string_view text) {
   if (text == "forget-oldest") return FullMap::forget_oldest;
   if (text == "thin") return FullMap::thin;
   throw std::invalid_argument("'" + std::string(text) + "' is none of refuse, forget-oldest, thin");
+}
+
+/// What accepts a match. A threshold of the other kind would do nothing, and is a fault.
+void resolve_decision(const MatcherSettings& settings, MatcherConfig& config, Faults& faults) {
+  config.decision =
+      settings.decision.value_or(settings.paper ? Decision::uniqueness : Decision::probability);
+  config.min_probability = settings.min_probability.value_or(config.min_probability);
+  config.patience = settings.patience.value_or(config.patience);
+  config.max_uniqueness = settings.max_uniqueness.value_or(config.max_uniqueness);
+  if (config.decision == Decision::probability) {
+    if (settings.max_uniqueness) {
+      faults.push_back({"max-uniqueness", "the probability decides",
+                        "--min-probability, or --decide-by uniqueness"});
+    }
+    return;
+  }
+  const std::string remedy = settings.decision
+                                 ? "--max-uniqueness, or leave --decide-by uniqueness out"
+                                 : "--max-uniqueness, or --decide-by probability";
+  if (settings.min_probability) {
+    faults.push_back({"min-probability", "the uniqueness decides", remedy});
+  }
+  if (settings.patience) {
+    faults.push_back({"patience", "where the uniqueness decides, no frame waits", remedy});
+  }
 }
 
 }  // namespace
@@ -119,8 +150,24 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.count("distances", config.relocalising.distances,
                 "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
   options.section("Decision");
-  options.number("max-uniqueness", config.max_uniqueness,
-                 "run: a match is reported up to this uniqueness, 0 to 1 [0.94]");
+  options.add({"min-probability", ValueKind::number,
+               "a match is accepted from this probability on, above 0 to 1 [0.99]",
+               [&settings](std::string_view value) {
+                 settings.min_probability = static_cast<float>(parse_number(value));
+               }});
+  options.add({"patience", ValueKind::count,
+               "a frame is answered this many frames later at the latest, 0 to 1000 [30]",
+               [&settings](std::string_view value) { settings.patience = parse_count(value); }});
+  options.section("Decision", Shown::in_help_all);
+  options.add(
+      {"decide-by", ValueKind::text,
+       "what accepts a match: probability or uniqueness [probability; uniqueness under --paper]",
+       [&settings](std::string_view value) { settings.decision = parse_decision(value); }});
+  options.add({"max-uniqueness", ValueKind::number,
+               "by uniqueness: a match is accepted up to this, above 0 to 1 [0.94]",
+               [&settings](std::string_view value) {
+                 settings.max_uniqueness = static_cast<float>(parse_number(value));
+               }});
   options.count("rwindow", config.rwindow,
                 "rows around the best that cannot be the runner-up [10]");
 }
@@ -144,11 +191,11 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
   config.enhance = settings.enhance.value_or(settings.method == "seqslam");
   config.standardisation.on = settings.standardise.value_or(!settings.paper && !patches);
   config.blank_is_unreadable = !settings.paper;
-  config.decision = settings.paper ? Decision::uniqueness : Decision::probability;
   resolve_method(settings.method, config, faults);
   config.arithmetic = settings.arithmetic.value_or(settings.paper || patches ? Arithmetic::float32
                                                                              : Arithmetic::int8);
   config.relocalising.on = settings.relocalise.value_or(!settings.paper);
+  resolve_decision(settings, config, faults);
   if (settings.method == "single") {
     config.sequence_length = 0;
     if (settings.ds_given)

@@ -20,7 +20,11 @@ struct MatcherSettings {
   std::optional<bool> standardise;       ///< on unless --paper or SeqSLAM, when nobody says
   std::optional<bool> enhance;           ///< on for SeqSLAM alone, when nobody says
   std::optional<Arithmetic> arithmetic;  ///< float under --paper and for SeqSLAM, otherwise int8
-  std::optional<bool> relocalise;        ///< on unless --paper, when nobody says
+  std::optional<Decision> decision;      ///< by probability unless --paper, when nobody says
+  std::optional<float> min_probability;
+  std::optional<std::size_t> patience;  ///< frames
+  std::optional<float> max_uniqueness;
+  std::optional<bool> relocalise;  ///< on unless --paper, when nobody says
 };
 
 /// @param settings lives as long as the table

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/frame_json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -15,7 +17,30 @@ double milliseconds(Nanoseconds duration) {
 }
 
 /// JSON has no NaN and no infinity.
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+template <class Number>
+Json finite(Number value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+// What an answer says beside which frame it is about, and its status.
+constexpr std::array of_an_answer{"match",      "probability", "score",
+                                  "uniqueness", "velocity",    "head"};
+
+Json answer_json(const Answer& answer) {
+  Json json;
+  json["frame"] = answer.frame;
+  json["status"] = name(answer.gate);
+  for (const char* key : of_an_answer) json[key] = nullptr;
+  json["probability"] = finite(answer.probability);
+  if (answer.match) {
+    json["match"] = answer.match->place;
+    json["score"] = finite(answer.match->score);
+    json["uniqueness"] = finite(answer.match->uniqueness);
+    json["velocity"] = finite(answer.match->velocity);
+    json["head"] = answer.match->head;
+  }
+  return json;
+}
 
 }  // namespace
 
@@ -29,7 +54,7 @@ std::vector<std::string_view> names(const Misses& missed) {
   return names;
 }
 
-std::string frame_json(const ProcessedFrame& processed, const LoopState& state) {
+Json frame_json(const ProcessedFrame& processed, const LoopState& state) {
   const FrameReport& report = processed.report;
   const bool came = report.gate != Gate::no_frame;
   const StageTimes& times = processed.times;
@@ -38,13 +63,13 @@ std::string frame_json(const ProcessedFrame& processed, const LoopState& state) 
   json["newest"] = came ? Json(report.newest) : Json(nullptr);
   json["time_s"] = came ? Json(processed.frame.time_s) : Json(nullptr);
   json["status"] = name(report.gate);
-  for (const char* key : {"match", "score", "uniqueness", "velocity", "head"}) json[key] = nullptr;
-  if (report.match) {
-    json["match"] = report.match->place;
-    json["score"] = finite(static_cast<double>(report.match->score));
-    json["uniqueness"] = finite(static_cast<double>(report.match->uniqueness));
-    json["velocity"] = finite(report.match->velocity);
-    json["head"] = report.match->head;
+  for (const char* key : of_an_answer) json[key] = nullptr;
+  json["answers"] = Json::array();
+  json["now"] = nullptr;
+  if (report.now) {
+    json["now"] = {{"place", report.now->place},
+                   {"probability", finite(report.now->probability)},
+                   {"new_place", finite(report.now->new_place)}};
   }
   json["k"] = report.k;
   json["candidates"] = report.work.candidates;
@@ -64,8 +89,19 @@ std::string frame_json(const ProcessedFrame& processed, const LoopState& state) 
   json["age_ms"] = milliseconds(times.age);
   if (!processed.frame.remark.empty()) json["remark"] = processed.frame.remark;
   if (!processed.fault.empty()) json["fault"] = processed.fault;
-  // A file name in a message may be no UTF-8.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  add_answers(json, report.answers);
+  return json;
+}
+
+void add_answers(Json& frame, std::span<const Answer> answers) {
+  if (answers.empty()) return;
+  Json& all = frame["answers"];
+  for (const Answer& answer : answers) all.push_back(answer_json(answer));
+  std::stable_sort(all.begin(), all.end(), [](const Json& one, const Json& other) {
+    return one["frame"].get<std::uint64_t>() < other["frame"].get<std::uint64_t>();
+  });
+  for (const char* key : {"frame", "status"}) frame[key] = all.back()[key];
+  for (const char* key : of_an_answer) frame[key] = all.back()[key];
 }
 
 }  // namespace seqloop::program

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -18,7 +19,12 @@ struct LoopState {
 /// Names of the limits that a frame broke.
 [[nodiscard]] std::vector<std::string_view> names(const Misses& missed);
 
-/// One line of `run`'s output, newline included. What a frame does not have is null.
-[[nodiscard]] std::string frame_json(const ProcessedFrame& processed, const LoopState& state);
+/// What `run` says of one frame. What it does not have is null.
+[[nodiscard]] nlohmann::ordered_json frame_json(const ProcessedFrame& processed,
+                                                const LoopState& state);
+
+/// Adds answers to those that it has, all in order of their frames. The last of them stands in the
+/// keys beside them, too.
+void add_answers(nlohmann::ordered_json& frame, std::span<const Answer> answers);
 
 }  // namespace seqloop::program

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -83,11 +85,21 @@ std::map<std::uint64_t, cv::Mat> fetch(FrameSource& source, std::vector<std::uin
   return found;
 }
 
+std::string how_sure(const Answer& answer) {
+  return std::isnan(answer.probability) ? fmt::format("uniqueness {:.2f}", answer.match->uniqueness)
+                                        : fmt::format("probability {:.3f}", answer.probability);
+}
+
 }  // namespace
 
-void PictureRecorder::add(const FrameReport& report, std::span<const float> query) {
-  if (report.match) decisions_.push_back({*report.frame, report.gate, *report.match});
-  if (report.newest % step_ != 0) return;
+void PictureRecorder::add(std::span<const Answer> answers) {
+  std::ranges::copy_if(answers, std::back_inserter(matches_), [](const Answer& answer) {
+    return answer.gate == Gate::match && answer.match;
+  });
+}
+
+void PictureRecorder::add(std::uint64_t frame, std::span<const float> query) {
+  if (frame % step_ != 0) return;
   queries_.emplace_back(query.begin(), query.end());
   if (queries_.size() < most_columns) return;
   for (std::size_t i = 0; 2 * i < queries_.size(); ++i) std::swap(queries_[i], queries_[2 * i]);
@@ -118,19 +130,17 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   cv::Mat inside = picture(cv::Rect(margin, margin / 2, plot_size, plot_size));
   cv::cvtColor(plot, inside, cv::COLOR_GRAY2BGR);
   const auto frames = static_cast<double>(queries_.size() * step_);
-  std::size_t matches = 0;
-  for (const Decision& decision : decisions_) {
-    if (decision.gate != Gate::match) continue;
-    ++matches;
-    const double x = static_cast<double>(decision.frame) / frames;
-    const double y = static_cast<double>(decision.match.place) / static_cast<double>(map.size());
+  for (const Answer& answer : matches_) {
+    const double x = static_cast<double>(answer.frame) / frames;
+    const double y = static_cast<double>(answer.match->place) / static_cast<double>(map.size());
     cv::circle(inside,
                {static_cast<int>(x * plot_size), plot_size - static_cast<int>(y * plot_size)}, 2,
                match_colour, cv::FILLED, cv::LINE_AA);
   }
   draw_axis(picture, true, queries_.size() * step_);
   draw_axis(picture, false, map.size());
-  write_text(picture, fmt::format("places over frames; dark: alike; red: {} matches", matches),
+  write_text(picture,
+             fmt::format("places over frames; dark: alike; red: {} matches", matches_.size()),
              {margin, margin / 2 - 12});
   write_png(folder / "difference_matrix.png", picture);
 }
@@ -138,17 +148,14 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
 bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
                                   const Reopen& reference) const {
   constexpr std::size_t most_pairs = 10;
-  std::vector<Decision> matches;
-  std::ranges::copy_if(decisions_, std::back_inserter(matches),
-                       [](const Decision& decision) { return decision.gate == Gate::match; });
-  const std::size_t count = std::min(most_pairs, matches.size());
-  std::vector<Decision> chosen;
+  const std::size_t count = std::min(most_pairs, matches_.size());
+  std::vector<Answer> chosen;
   std::vector<std::uint64_t> frames;
   std::vector<std::uint64_t> places;
   for (std::size_t i = 0; i < count; ++i) {
-    chosen.push_back(matches[(2 * i + 1) * matches.size() / (2 * count)]);
+    chosen.push_back(matches_[(2 * i + 1) * matches_.size() / (2 * count)]);
     frames.push_back(chosen.back().frame);
-    places.push_back(chosen.back().match.place);
+    places.push_back(chosen.back().match->place);
   }
   const auto seen = fetch(*query(), frames);
   const auto known = fetch(*reference(), places);
@@ -159,9 +166,9 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
     for (const auto& [frame, picture] : pictures) height = std::max(height, picture.rows);
   }
   std::vector<cv::Mat> pairs;
-  for (const Decision& decision : chosen) {
-    const auto left = seen.find(decision.frame);
-    const auto right = known.find(decision.match.place);
+  for (const Answer& answer : chosen) {
+    const auto left = seen.find(answer.frame);
+    const auto right = known.find(answer.match->place);
     if (left == seen.end() || right == known.end()) continue;
     constexpr int caption = 24;
     constexpr int gap = 6;
@@ -170,10 +177,8 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
     left->second.copyTo(pair(cv::Rect({gap, caption}, left->second.size())));
     right->second.copyTo(
         pair(cv::Rect({left->second.cols + 2 * gap, caption}, right->second.size())));
-    write_text(pair, fmt::format("frame {}", decision.frame), {gap, caption - 7});
-    write_text(pair,
-               fmt::format("is place {}, uniqueness {:.2f}", decision.match.place,
-                           decision.match.uniqueness),
+    write_text(pair, fmt::format("frame {}", answer.frame), {gap, caption - 7});
+    write_text(pair, fmt::format("is place {}, {}", answer.match->place, how_sure(answer)),
                {left->second.cols + 2 * gap, caption - 7});
     pairs.push_back(pair);
   }

@@ -16,14 +16,18 @@
 namespace seqloop::program {
 
 /// Keeps what pictures of a run need, while it runs: at most 1,000 descriptors, thinned out evenly
-/// as the drive grows, and the decisions.
+/// as the drive grows, and the accepted answers.
 class PictureRecorder {
  public:
   /// @param difference what the matrix shows
   explicit PictureRecorder(Difference difference) noexcept : difference_(difference) {}
 
-  /// @param query about what the detector compared, as `Detector::newest_query` gives it
-  void add(const FrameReport& report, std::span<const float> query);
+  /// Takes a frame. @param query about what the detector compared, as `Detector::newest_query`
+  /// gives it
+  void add(std::uint64_t frame, std::span<const float> query);
+
+  /// Takes answers, of which those that are accepted are shown.
+  void add(std::span<const Answer> answers);
 
   /// Writes `difference_matrix.png`: places upwards, frames to the right, dark where they are
   /// alike, and the matches on it. Throws files::IoError, SetupError.
@@ -38,16 +42,10 @@ class PictureRecorder {
                    const Reopen& reference) const;
 
  private:
-  struct Decision {
-    std::uint64_t frame;
-    Gate gate;
-    Match match;
-  };
-
   Difference difference_;
   std::uint64_t step_ = 1;  // every step_-th frame is kept
   std::vector<std::vector<float>> queries_;
-  std::vector<Decision> decisions_;
+  std::vector<Answer> matches_;
 };
 
 }  // namespace seqloop::program

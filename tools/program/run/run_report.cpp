@@ -39,6 +39,15 @@ Json budget_json(const Budget& budget) {
           {"match", milliseconds(budget.match)}};
 }
 
+Json decision_json(const MatcherConfig& config) {
+  if (config.decision == Decision::uniqueness) {
+    return {{"by", "uniqueness"}, {"max_uniqueness", config.max_uniqueness}};
+  }
+  return {{"by", "probability"},
+          {"min_probability", config.min_probability},
+          {"patience", config.patience}};
+}
+
 }  // namespace
 
 std::string run_report(const RunSummary& summary, const RunConditions& conditions) {
@@ -48,6 +57,7 @@ std::string run_report(const RunSummary& summary, const RunConditions& condition
   json["capture"] = conditions.capture;
   json["method"] = conditions.method;
   json["ds"] = conditions.config.sequence_length;
+  json["decision"] = decision_json(conditions.config);
   json["places"] = conditions.places;
   json["descriptor_size"] = conditions.descriptor_size;
   json["budget_ms"] = budget_json(conditions.budget);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <numeric>
 
 namespace seqloop::program {
 namespace {
@@ -26,11 +27,17 @@ std::string stage_line(const StageRecord& stage) {
       milliseconds(stage.times.quantile(0.999)), milliseconds(stage.times.maximum()));
 }
 
+std::size_t index(Gate gate) { return static_cast<std::size_t>(gate); }
+
 }  // namespace
 
 void RunSummary::add(const ProcessedFrame& processed, const LoopState& state) {
-  ++at_gate_[static_cast<std::size_t>(processed.report.gate)];
-  if (processed.report.gate == Gate::no_frame) return;
+  const FrameReport& report = processed.report;
+  add(report.answers);
+  // A frame that cannot be read may come before any is answered.
+  const bool unanswered = report.answers.empty() && report.gate == Gate::frame_error;
+  if (unanswered || report.gate == Gate::no_frame) ++at_gate_[index(report.gate)];
+  if (report.gate == Gate::no_frame) return;
   const StageTimes& times = processed.times;
   stages_[grab].times.add(times.grab);
   stages_[describe].times.add(times.describe);
@@ -40,19 +47,29 @@ void RunSummary::add(const ProcessedFrame& processed, const LoopState& state) {
   stages_[answer].times.add(times.age + times.total);
   dropped_ += processed.frame.dropped;
   lost_ += processed.frame.lost;
-  if (processed.report.map_full) ++map_full_;
+  if (report.map_full) ++map_full_;
   if (state.missed.any()) ++misses_;
   for (const std::string_view limit : names(state.missed)) ++missed_.at(limit);
   if (state.overloaded) ++overloaded_;
 }
 
+void RunSummary::add(std::span<const Answer> answers) {
+  for (const Answer& given : answers) ++at_gate_[index(given.gate)];
+}
+
+std::uint64_t RunSummary::at(Gate gate) const noexcept {
+  if (gate != Gate::warming_up) return at_gate_[index(gate)];
+  const std::uint64_t events = at_gate_[index(Gate::no_frame)];
+  return frames() + events - std::accumulate(at_gate_.begin(), at_gate_.end(), std::uint64_t{0});
+}
+
 std::string RunSummary::text() const {
-  std::string text = fmt::format("{} frames:", frames());
-  const auto first = static_cast<std::size_t>(Gate::frame_error);
-  for (std::size_t gate = gates; gate-- > first;) {
-    text += fmt::format(" {} {}{}", at_gate_[gate], name(static_cast<Gate>(gate)),
-                        gate > first ? "," : "\n");
+  std::string text = fmt::format("{} frames: {} match", frames(), at(Gate::match));
+  for (std::size_t i = index(Gate::match); i-- > index(Gate::frame_error);) {
+    const auto gate = static_cast<Gate>(i);
+    if (at(gate) > 0) text += fmt::format(", {} {}", at(gate), name(gate));
   }
+  text += '\n';
   if (frames() > 0) {
     text += fmt::format("  {:<10}{:>10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "p99.9", "max");
     for (const StageRecord& stage : stages()) text += stage_line(stage);

@@ -29,6 +29,9 @@ class RunSummary {
 
   void add(const ProcessedFrame& processed, const LoopState& state);
 
+  /// Answers that were due at the end.
+  void add(std::span<const Answer> answers);
+
   /// What became of a live source's frames.
   void captured(const live::LiveCounts& counts) {
     capture_ = counts;
@@ -39,9 +42,8 @@ class RunSummary {
 
   /// Frames that were taken up, those that could not be read included.
   [[nodiscard]] std::uint64_t frames() const noexcept { return stages_[total].times.count(); }
-  [[nodiscard]] std::uint64_t at(Gate gate) const noexcept {
-    return at_gate_[static_cast<std::size_t>(gate)];
-  }
+  /// Frames by their final answer; of `warming_up`, those that have none. Of `no_frame`, events.
+  [[nodiscard]] std::uint64_t at(Gate gate) const noexcept;
   [[nodiscard]] std::uint64_t misses() const noexcept { return misses_; }
   /// Frames that broke each limit, by the names of `Misses`.
   [[nodiscard]] const std::map<std::string_view, std::uint64_t>& missed() const noexcept {

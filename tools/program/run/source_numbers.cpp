@@ -1,29 +1,75 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/source_numbers.hpp"
 
+#include <algorithm>
+#include <ranges>
+
 namespace seqloop::program {
 namespace {
 
 /// A number as an index. On 32-bit systems a report's places wrap after 4.5 years at 30 frames/s.
 std::size_t at(std::uint64_t number) noexcept { return static_cast<std::size_t>(number); }
 
+/// Frames back from the newest that an answer may be about: those that wait, and as many more as
+/// may be skipped at once.
+std::size_t reach(const MatcherConfig& config) {
+  return config.patience + config.sequence_length + 2;
+}
+
 }  // namespace
+
+SourceNumbers::SourceNumbers(const MatcherConfig& config, const PlaceMap* map)
+    : map_(map), recent_(reach(config)), places_(map == nullptr ? 0 : map->capacity()) {
+  answers_.reserve(reach(config));
+}
 
 void SourceNumbers::rename(ProcessedFrame& processed) noexcept {
   FrameReport& report = processed.report;
   if (report.gate == Gate::no_frame) return;
-  // What the detector has counted in between came just before this frame.
-  for (; counted_ <= report.newest; ++counted_) {
-    const std::uint64_t number = processed.frame.index - (report.newest - counted_);
-    recent_[at(counted_ % recent_.size())] = number;
-    if (counted_ < places_.size()) places_[at(counted_)] = number;
-  }
+  note(report.newest, processed.frame.index);
   report.newest = processed.frame.index;
-  if (report.frame) report.frame = recent_[at(*report.frame % recent_.size())];
-  if (report.match && !places_.empty()) {
-    report.match->place = at(places_[report.match->place]);
-    report.match->head = at(places_[report.match->head]);
+  if (report.frame) report.frame = frame(*report.frame);
+  rename(report.match);
+  if (report.now && map_ != nullptr) report.now->place = place(report.now->place);
+  report.answers = rename(report.answers);
+}
+
+std::span<const Answer> SourceNumbers::rename(std::span<const Answer> answers) noexcept {
+  answers_.assign(answers.begin(), answers.end());
+  for (Answer& answer : answers_) {
+    answer.frame = frame(answer.frame);
+    rename(answer.match);
   }
+  return answers_;
+}
+
+/// What the detector has counted since the last frame came just before this one, and is in the
+/// newest rows of the map, unless that was full.
+void SourceNumbers::note(std::uint64_t newest, std::uint64_t index) noexcept {
+  for (; counted_ <= newest; ++counted_) {
+    const std::uint64_t before = newest - counted_;
+    recent_[at(counted_ % recent_.size())] = index - before;
+    if (map_ == nullptr || before >= map_->size()) continue;
+    const std::size_t row = map_->size() - 1 - at(before);
+    if (map_->order().number(row) == counted_) places_[map_->order().slot(row)] = index - before;
+  }
+}
+
+std::uint64_t SourceNumbers::frame(std::uint64_t counted) const noexcept {
+  return recent_[at(counted % recent_.size())];
+}
+
+std::size_t SourceNumbers::place(std::size_t number) const noexcept {
+  const auto rows = std::views::iota(std::size_t{0}, map_->size());
+  const auto row = std::ranges::lower_bound(
+      rows, number, {}, [&](std::size_t candidate) { return at(map_->order().number(candidate)); });
+  return row == rows.end() ? number : at(places_[map_->order().slot(*row)]);
+}
+
+void SourceNumbers::rename(std::optional<Match>& match) const noexcept {
+  if (!match || map_ == nullptr) return;
+  match->place = place(match->place);
+  match->head = place(match->head);
 }
 
 }  // namespace seqloop::program

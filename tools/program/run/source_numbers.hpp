@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "seqloop/matcher_config.hpp"
 #include "seqloop/pipeline.hpp"
+#include "seqloop/place_map.hpp"
 
 namespace seqloop::program {
 
@@ -13,19 +16,31 @@ namespace seqloop::program {
 /// gaps out (`Detector::skip`), and a live source's first frame may not be its number 0.
 class SourceNumbers {
  public:
-  /// @param window frames that an answer looks back on, ds + 1
-  /// @param places room in a map that the drive itself makes; 0 where it is localised in another
-  SourceNumbers(std::size_t window, std::size_t places) : recent_(window), places_(places) {}
+  /// @param map which the drive itself makes, and which lives longer; null where it is localised in
+  /// another
+  SourceNumbers(const MatcherConfig& config, const PlaceMap* map);
 
-  /// Notes a processed frame, and puts the source's numbers into its report: `newest`, `frame`, and
-  /// where loops are closed, the match's `place` and `head`. Nothing changes at the gate
-  /// `no_frame`. Work: frames since the last call. Allocates: never.
+  /// Notes a frame that the detector has just taken, and puts the source's numbers into its report:
+  /// `newest`, `frame`, those of its answers and, where loops are closed, those of places. Nothing
+  /// changes at the gate `no_frame`.
+  /// Work: frames since the last call; log N a place. Allocates: never.
   void rename(ProcessedFrame& processed) noexcept;
 
+  /// @param answers of the detector's `finish`
+  /// @return the same with the source's numbers; they stand until the next call
+  [[nodiscard]] std::span<const Answer> rename(std::span<const Answer> answers) noexcept;
+
  private:
-  std::vector<std::uint64_t> recent_;  // [window] by the detector's number, modulo the window
-  std::vector<std::uint64_t> places_;  // [places]
-  std::uint64_t counted_ = 0;          // frames that the detector has counted
+  void note(std::uint64_t newest, std::uint64_t index) noexcept;
+  [[nodiscard]] std::uint64_t frame(std::uint64_t counted) const noexcept;
+  [[nodiscard]] std::size_t place(std::size_t number) const noexcept;
+  void rename(std::optional<Match>& match) const noexcept;
+
+  const PlaceMap* map_;
+  std::vector<std::uint64_t> recent_;  // by the detector's number, modulo as many as still matter
+  std::vector<std::uint64_t> places_;  // by slot of the map
+  std::vector<Answer> answers_;
+  std::uint64_t counted_ = 0;  // frames that the detector has counted
 };
 
 }  // namespace seqloop::program

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,13 +41,61 @@ std::string precise(Number value) {
   return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
 }
 
+/// What the search for a frame, as the centre of its window, took.
+struct Searched {
+  std::uint64_t candidates = 0;
+  std::size_t k = 0;
+  std::uint64_t distances = 0;
+};
+
 /// A row of the match list.
-std::string csv_row(const FrameReport& report) {
-  const Match& match = *report.match;
-  return fmt::format("{},{},{},{},{},{},{},{},{}\n", *report.frame, match.place,
+std::string csv_row(const Answer& answer, const Searched& searched) {
+  const Match& match = *answer.match;
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", answer.frame, match.place,
                      precise(match.score), precise(match.uniqueness), precise(match.velocity),
-                     match.head, report.work.candidates, report.k, report.work.distances);
+                     match.head, searched.candidates, searched.k, searched.distances,
+                     precise(answer.probability), answer.gate == Gate::match ? 1 : 0);
 }
+
+/// The answers of a recording.
+class MatchList {
+ public:
+  /// @param frames of the recording
+  MatchList(const MatcherConfig& config, std::size_t frames)
+      : after_centre_(config.sequence_length - config.sequence_length / 2), searched_(frames) {}
+
+  void add(const FrameReport& report) {
+    add(report.answers);
+    if (report.newest < after_centre_) return;
+    searched_[static_cast<std::size_t>(report.newest - after_centre_)] = {
+        report.work.candidates, report.k, report.work.distances};
+  }
+
+  void add(std::span<const Answer> answers) {
+    std::ranges::copy_if(answers, std::back_inserter(answers_),
+                         [](const Answer& answer) { return answer.match.has_value(); });
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return answers_.size(); }
+  [[nodiscard]] std::size_t accepted() const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(answers_, Gate::match, &Answer::gate));
+  }
+
+  /// A frame that was sure may have been answered before one that came before it.
+  void write(files::OutputFile& out) {
+    std::ranges::sort(answers_, {}, &Answer::frame);
+    out.write(
+        "query,match,score,uniqueness,velocity,head,candidates,k,distances,probability,accepted\n");
+    for (const Answer& answer : answers_) {
+      out.write(csv_row(answer, searched_[static_cast<std::size_t>(answer.frame)]));
+    }
+  }
+
+ private:
+  std::size_t after_centre_;
+  std::vector<Answer> answers_;
+  std::vector<Searched> searched_;  // by frame
+};
 
 void match(const MatchSettings& settings, Faults faults) {
   take_interruptions();
@@ -88,9 +139,8 @@ void match(const MatchSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   Detector detector(config, map);
-  out->write("query,match,score,uniqueness,velocity,head,candidates,k,distances\n");
+  MatchList list(config, query->rows);
   Progress progress("matching", query->rows);
-  std::size_t answered = 0;
   std::size_t blank_frames = 0;
   std::vector<std::span<const float>> frames;
   std::vector<FrameReport> reports(config.frames_at_once);
@@ -102,18 +152,19 @@ void match(const MatchSettings& settings, Faults faults) {
       frames.push_back(query->row(next));
       if (blank(config.difference, frames.back())) ++blank_frames;
     }
-    detector.steps(frames, std::span(reports).first(frames.size()));
-    for (const FrameReport& report : std::span(reports).first(frames.size())) {
+    const std::size_t taken = detector.steps(frames, reports);
+    for (const FrameReport& report : std::span(reports).first(taken)) {
       progress.step();
-      if (!report.match) continue;
-      out->write(csv_row(report));
-      ++answered;
+      list.add(report);
     }
   }
+  list.add(detector.finish());
   progress.done();
+  list.write(*out);
   out->commit();
   tell_blank(settings.query, blank_frames, query->rows);
-  say("{} of {} frames answered, in {}", answered, query->rows, settings.out.string());
+  say("{} of {} frames answered, {} of them accepted, in {}", list.size(), query->rows,
+      list.accepted(), settings.out.string());
 }
 
 }  // namespace

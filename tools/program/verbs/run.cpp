@@ -16,7 +16,7 @@
 #include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
-#include "program/run/frame_json.hpp"
+#include "program/run/frame_lines.hpp"
 #include "program/run/pictures.hpp"
 #include "program/run/run_report.hpp"
 #include "program/run/run_setup.hpp"
@@ -103,32 +103,35 @@ void run(const RunSettings& settings, Faults faults) {
   const live::ThreadCounters warm = live::thread_counters();
 
   const bool closing = settings.reference.empty();
-  SourceNumbers numbers = with_room(setup, [&] {
-    return SourceNumbers(setup.config.sequence_length + 1, closing ? setup.places : 0);
-  });
+  SourceNumbers numbers =
+      with_room(setup, [&] { return SourceNumbers(setup.config, closing ? &map : nullptr); });
+  FrameLines lines(*setup.out, setup.live != nullptr);
   std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
   std::exception_ptr unwritten;
+  const auto attempt = [&unwritten](auto write) {
+    try {
+      write();
+    } catch (const files::IoError&) {
+      unwritten = std::current_exception();
+    }
+  };
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
     std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
     if (!settings.pictures.empty()) {
       detector.newest_query(query);
-      recorder.add(processed->report, query);
+      recorder.add(processed->report.newest, query);
+      recorder.add(processed->report.answers);
     }
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
-    try {
-      setup.out->write(frame_json(*processed, state));
-      setup.out->flush();
-    } catch (const files::IoError&) {
-      unwritten = std::current_exception();
-      break;
-    }
+    attempt([&] { lines.add(*processed, state); });
+    if (unwritten) break;
     trouble.tell(*processed, clock.now());
     if (processed->report.gate == Gate::no_frame) {
       given_up = settings.give_up_s > 0.0 &&
@@ -148,6 +151,9 @@ void run(const RunSettings& settings, Faults faults) {
   }
   const ThreadCost cost = since(warm);
   progress.done();
+  const std::span<const Answer> rest = detector.finish();
+  recorder.add(rest);
+  summary.add(rest);
   tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
   tell_blank(settings.source, blank_frames, summary.frames());
   const bool none_readable =
@@ -156,6 +162,7 @@ void run(const RunSettings& settings, Faults faults) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
   // The answers first: a driver that hangs may keep the capture thread from ending.
+  if (!unwritten) attempt([&] { lines.end(numbers.rename(rest)); });
   if (!unwritten) {
     setup.out->commit();
   } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "program/run/frame_lines.hpp"
+
+#include <utility>
+
+namespace seqloop::program {
+
+void FrameLines::add(const ProcessedFrame& processed, const LoopState& state) {
+  write();
+  line_ = frame_json(processed, state);
+  if (live_) write();
+}
+
+void FrameLines::end(std::span<const Answer> answers) {
+  if (!line_ && !answers.empty()) {
+    ProcessedFrame none;
+    none.report.gate = Gate::no_frame;
+    line_ = frame_json(none, {});
+    add_answers(*line_, answers);
+    (*line_)["status"] = "ended";
+  } else if (line_) {
+    add_answers(*line_, answers);
+  }
+  write();
+}
+
+void FrameLines::write() {
+  if (!line_) return;
+  const auto line = std::exchange(line_, std::nullopt);
+  // A file name in a message may be no UTF-8.
+  out_->write(line->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+  out_->flush();
+}
+
+}  // namespace seqloop::program
