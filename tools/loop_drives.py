@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The drives on which loops are measured, and how each is made. Used by tools/loops."""
+"""The drives on which loops are measured, and how each is made. Used by tools/loops, and in part by
+tools/confidence."""
 import array
 import csv
 import dataclasses
@@ -22,7 +23,7 @@ STREET_FRAMES, STREET_PIECES, STREET_SEED = 24_000, 24, 1
 
 
 def say(text: str) -> None:
-    print(f"loops: {text}", file=sys.stderr, flush=True)
+    print(f"{pathlib.Path(sys.argv[0]).name}: {text}", file=sys.stderr, flush=True)
 
 
 @dataclasses.dataclass(frozen=True)

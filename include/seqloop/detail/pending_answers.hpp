@@ -111,7 +111,7 @@ class PendingAnswers {
   std::span<FoundLine> lines_;          // [the same, lines_kept]
   std::span<Answer> answers_;           // [patience + frames at once + 1]
   std::span<PlaceBelief::Step> trace_;  // [patience + 1]
-  std::span<Ends> weights_;             // [patience + 2]
+  std::span<Ends> weights_;             // [patience + 1]
 };
 
 }  // namespace seqloop

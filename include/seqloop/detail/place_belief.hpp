@@ -34,7 +34,8 @@ struct Evidence {
 /// Where the robot may be, and whether the map knows the place at all: a discrete Bayes filter over
 /// a few rows and "somewhere new", fed by the sketches of each frame. How well a row has done is
 /// compared with how well the best wrong rows do in this drive, which is learnt as it goes; a robot
-/// that stands gains nothing. Source: the page "Decision"; Xu, Fischer, Suenderhauf, Milford 2021.
+/// that stands gains nothing. Source: src/README.md, section 6; Xu, Fischer, Suenderhauf, Milford
+/// 2021.
 class PlaceBelief {
  public:
   /// Rows that are weighed at a frame.
@@ -166,7 +167,7 @@ class PlaceBelief {
   std::optional<Likeliest> likeliest_;
   std::size_t last_linked_ = 0;         // row
   std::span<Hypothesis> rows_;          // [most] in order of row
-  std::span<Hypothesis> moved_;         // [3 most]
+  std::span<Hypothesis> moved_;         // [4 most]
   std::span<Traced> traces_;            // [depth, most], a ring
   std::span<std::uint64_t> places_;     // [places] by slot: number of the place's first visit
   std::span<std::uint32_t> histogram_;  // [bits + 1] of the scan

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""The drives on which confidence is measured, and how each is made. Used by tools/confidence."""
+import csv
+import dataclasses
+import pathlib
+import shutil
+from typing import Callable
+
+import numpy as np
+
+from loop_drives import GARDENS, NORDLAND, Tools, call, say
+
+GARAGE, GARAGE_TRUTH, FIRST_LAP = "garage_laps/images", "garage_laps/truth.csv", 211
+Truth = dict[int, list[int]]  # right places of a frame; none: nothing is right; unlisted: unknown
+
+
+def same_frames(count: int, after: int = 0) -> Truth:
+    """Frame i of the second drive is place i; `after` frames before it are new."""
+    return {i: [] for i in range(after)} | {after + i: [i] for i in range(count)}
+
+
+def read_truth(path: pathlib.Path, new: int) -> Truth:
+    """@param new the first so many frames have nothing that is right, unless the file says so"""
+    truth: Truth = {i: [] for i in range(new)}
+    with path.open(encoding="ascii") as stream:
+        for row in csv.DictReader(stream):
+            truth.setdefault(int(row["query"]), []).append(int(row["reference"]))
+    return truth
+
+
+@dataclasses.dataclass(frozen=True)
+class Maker:
+    """Makes what drives consist of, once: what OUT/descriptors has is not made again."""
+    tools: Tools
+    out: pathlib.Path
+
+    def read(self, source: str, name: str) -> np.ndarray:
+        path = self.out / f"{name}.npy"
+        if not path.exists():
+            say(f"{name}: making descriptors")
+            self.tools.describe(source, path)
+        return np.load(path)
+
+    def real(self, source: str) -> np.ndarray:
+        return self.read(source, source.replace("/", "-"))
+
+    def street(self, use: str, frames: int, seed: int) -> tuple[list[np.ndarray], pathlib.Path]:
+        """Descriptors of the drives of a synthetic street, and their truth."""
+        parts = ["reference", "query"] if use == "localise" else ["drive"]
+        name = f"street-{use}-{seed}"
+        files = [self.out / f"{name}-{part}.npy" for part in parts]
+        folder, truth = self.out / f"{name}.pictures", self.out / f"{name}-truth.csv"
+        if not all(file.exists() for file in [*files, truth]):
+            say(f"{name}: drawing")
+            jumps = ["--kidnaps", seed % 3] if use == "loop" else []
+            call([self.tools.street, "--keep", "--quiet", "--drives", use, "--frames", frames,
+                  "--seed", seed, "--out", folder, *jumps])
+        drives = [self.read(str(folder / part), file.stem) for part, file in zip(parts, files)]
+        if folder.exists():
+            (folder / "truth.csv").replace(truth)
+            shutil.rmtree(folder)
+        return drives, truth
+
+
+@dataclasses.dataclass(frozen=True)
+class Drive:
+    name: str
+    make: Callable[[Maker], tuple[np.ndarray, np.ndarray | None, Truth]]  # query, map, truth
+    tolerances: tuple[int, int]  # frames
+    needs: tuple[str, ...] = ()  # below the data folder; none: a synthetic street
+
+
+def localise(query: str, reference: str):
+    def make(maker: Maker):
+        rows = maker.real(query)
+        return rows, maker.real(reference), same_frames(len(rows))
+    return make
+
+
+def one_after_the_other(first: str, second: str, between: int = 0):
+    """As one drive, with so many frames of a covered lens between them."""
+    def make(maker: Maker):
+        before, after = maker.real(first), maker.real(second)
+        dark = np.zeros((between, before.shape[1]), before.dtype)
+        new = len(before) + between
+        return np.vstack([before, dark, after]), None, same_frames(len(after), new)
+    return make
+
+
+def nothing_twice(source: str):
+    def make(maker: Maker):
+        rows = maker.real(source)
+        return rows, None, same_frames(0, len(rows))
+    return make
+
+
+def garage(maker: Maker):
+    return maker.real(GARAGE), None, read_truth(maker.tools.data / GARAGE_TRUTH, FIRST_LAP)
+
+
+def standing(source: str, frame: int, going_on: int):
+    """To a frame, 5,000 noisy pictures of it, and on."""
+    def make(maker: Maker):
+        rows = maker.real(source)
+        noise = np.random.default_rng(5).normal(0.0, 0.003, (5000, rows.shape[1]))
+        still = rows[frame] + noise
+        still /= np.linalg.norm(still, axis=1, keepdims=True)
+        whole = np.vstack([rows[:frame + 1], still, rows[frame + 1:frame + 1 + going_on]])
+        return whole, None, same_frames(0, len(whole))
+    return make
+
+
+def teleports(query: str, reference: str, pieces: int, shortest: int, longest: int):
+    """Pieces of the query in any order; the same frame may come again."""
+    def make(maker: Maker):
+        rows, dice = maker.real(query), np.random.default_rng(5)
+        begins = dice.integers(0, len(rows) - longest, pieces)
+        frames = np.concatenate([np.arange(at, at + dice.integers(shortest, longest))
+                                 for at in begins])
+        return rows[frames], maker.real(reference), {i: [int(f)] for i, f in enumerate(frames)}
+    return make
+
+
+def street(seed: int, use: str, alone: int | None = None):
+    """@param alone which of the two drives is matched with itself"""
+    def make(maker: Maker):
+        drives, truth = maker.street(use, 600 if use == "localise" else 1200, seed)
+        if alone is not None:
+            return drives[alone], None, same_frames(0, len(drives[alone]))
+        known = drives[0] if use == "localise" else None
+        return drives[-1], known, read_truth(truth, len(drives[-1]))
+    return make
+
+
+def all_drives(seeds: list[int]) -> list[Drive]:
+    (day, night), (summer, winter) = GARDENS, NORDLAND
+    drives = [
+        Drive("gardens-day-night", localise(night, day), (10, 2), GARDENS),
+        Drive("gardens-night-day", localise(day, night), (10, 2), GARDENS),
+        Drive("gardens-loop", one_after_the_other(day, night), (10, 2), GARDENS),
+        Drive("nordland-summer-winter", localise(winter, summer), (10, 1), NORDLAND),
+        Drive("nordland-winter-summer", localise(summer, winter), (10, 1), NORDLAND),
+        Drive("nordland-loop", one_after_the_other(summer, winter), (10, 1), NORDLAND),
+        Drive("garage", garage, (12, 27), (GARAGE, GARAGE_TRUTH)),
+        Drive("standing-nordland", standing(summer, 300, 299), (10, 2), (summer,)),
+        Drive("standing-garage", standing(GARAGE, 150, 0), (10, 2), (GARAGE,)),
+        Drive("covered-lens", one_after_the_other(day, night, 3000), (10, 2), GARDENS),
+        Drive("teleports-gardens", teleports(night, day, 40, 15, 80), (10, 2), GARDENS),
+        Drive("teleports-nordland", teleports(winter, summer, 200, 12, 60), (10, 1), NORDLAND)]
+    drives += [Drive(f"new-{source.split('/')[-1]}", nothing_twice(source), (10, 2), (source,))
+               for source in (*GARDENS, *NORDLAND)]
+    for seed in seeds:
+        drives += [Drive(f"street-{seed}", street(seed, "localise"), (10, 3)),
+                   Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3)),
+                   Drive(f"street-{seed}-new-summer", street(seed, "localise", 0), (10, 3)),
+                   Drive(f"street-{seed}-new-winter", street(seed, "localise", 1), (10, 3))]
+    return drives
