@@ -42,6 +42,13 @@ ProcessedFrame processed(std::uint64_t index, std::uint64_t counted) {
   return frame;
 }
 
+Answer about(std::uint64_t frame, const std::optional<Match>& match = {}) {
+  Answer answer;
+  answer.frame = frame;
+  answer.match = match;
+  return answer;
+}
+
 TEST(SourceNumbers, AreTheDetectorsOwnWhereNothingIsMissing) {
   const PlaceMap map = map_of(100, 50);
   SourceNumbers numbers(config(), &map);
@@ -49,8 +56,7 @@ TEST(SourceNumbers, AreTheDetectorsOwnWhereNothingIsMissing) {
   numbers.rename(first);
   ProcessedFrame frame = processed(50, 50);
   frame.report.match = Match{.place = 10, .head = 12};
-  const std::array answers{Answer{.frame = 46, .match = Match{.place = 9, .head = 11}},
-                           Answer{.frame = 50}};
+  const std::array answers{about(46, Match{.place = 9, .head = 11}), about(50)};
   frame.report.answers = answers;
   frame.report.now = Belief{.place = 14};
   numbers.rename(frame);
@@ -79,7 +85,7 @@ TEST(SourceNumbers, CountShortGapsAndLongOnes) {
   EXPECT_EQ(second.report.frame, 8U);
   ProcessedFrame third = processed(500, 4);  // the detector left the gap out
   third.report.match = Match{.place = 1, .head = 4};
-  const std::array answers{Answer{.frame = 0}, Answer{.frame = 3}, Answer{.frame = 4}};
+  const std::array answers{about(0), about(3), about(4)};
   third.report.answers = answers;
   third.report.now = Belief{.place = 4};
   numbers.rename(third);
@@ -91,7 +97,7 @@ TEST(SourceNumbers, CountShortGapsAndLongOnes) {
   EXPECT_EQ(third.report.match->place, 8U);
   EXPECT_EQ(third.report.match->head, 500U);
   EXPECT_EQ(third.report.now->place, 500U);
-  const std::array rest{Answer{.frame = 2}, Answer{.frame = 4, .match = Match{.place = 3}}};
+  const std::array rest{about(2), about(4, Match{.place = 3})};
   const std::span<const Answer> renamed = numbers.rename(rest);
   EXPECT_EQ(renamed[0].frame, 9U);
   EXPECT_EQ(renamed[1].frame, 500U);
@@ -105,7 +111,7 @@ TEST(SourceNumbers, ReachBackAsFarAsAFrameMayWait) {
       ProcessedFrame frame = processed(2 * counted, counted);
       // As many may be skipped, just before this one, as the window is long.
       const std::uint64_t back = std::min<std::uint64_t>(counted, patience + 5);
-      const std::array answers{Answer{.frame = counted - back}, Answer{.frame = counted}};
+      const std::array answers{about(counted - back), about(counted)};
       frame.report.answers = answers;
       numbers.rename(frame);
       ASSERT_EQ(frame.report.answers[0].frame, 2 * (counted - back));

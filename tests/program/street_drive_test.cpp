@@ -108,7 +108,7 @@ TEST_F(StreetDrive, BlackFramesMatchNothing) {
       const std::string number = std::to_string(1'000'000 + frame).substr(1);
       const std::string name = "drive/" + drive + '/' + number;
       ASSERT_TRUE(std::filesystem::remove(file(name + ".png")));
-      folder_.write(name + ".pgm", "P5 160 90 255\n" + std::string(160U * 90U, '\0'));
+      folder_.write(name + ".pgm", std::string("P5 160 90 255\n").append(160U * 90U, '\0'));
     }
   };
   blacken("reference", 20);
