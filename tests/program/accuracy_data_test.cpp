@@ -56,7 +56,8 @@ TEST_F(Accuracy, NordlandWithTheBuiltInDescriptor) {
   SEQLOOP_DATA_OR_SKIP(shared);
   const std::string drives = (shared / "data/nordland_64x32/").string();
   const auto at = [&](const std::string& match) {
-    return recall_at_100_precision(drives + "summer", drives + "winter", match,
+    return recall_at_100_precision(drives + "summer", drives + "winter",
+                                   match + " --decide-by uniqueness",
                                    "--frames 2400 --tolerance 1");
   };
   EXPECT_GE(at("--method seqcnnslam --ds 20"), 0.88);

@@ -42,6 +42,7 @@ TEST_F(Live, EveryFrameOfTheRecordingIsTakenOrCounted) {
   std::uint64_t frames = 0;
   std::uint64_t missing = 0;
   for (const Json& line : lines("r.jsonl")) {
+    if (line["newest"].is_null()) continue;  // the answers that were left at the end
     ++frames;
     missing += line["dropped"].get<std::uint64_t>() + line["lost"].get<std::uint64_t>();
     EXPECT_GE(line["age_ms"].get<double>(), 0.0);
@@ -71,6 +72,7 @@ TEST_F(Live, AnOverloadedLoopSaysSoAndThinsOutAsDeclared) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   std::uint64_t overloaded = 0;
   for (const Json& line : lines("r.jsonl")) {
+    if (line["newest"].is_null()) continue;  // the answers that were left at the end
     EXPECT_TRUE(line["deadline_missed"]);
     EXPECT_EQ(line["missed"], Json::array({"total"}));
     if (line["overloaded"]) {

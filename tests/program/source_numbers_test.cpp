@@ -74,15 +74,23 @@ TEST(SourceNumbers, AreTheDetectorsOwnWhereNothingIsMissing) {
 }
 
 TEST(SourceNumbers, CountShortGapsAndLongOnes) {
-  const PlaceMap map = map_of(100, 5);
-  SourceNumbers numbers(config(), &map);
+  MatcherConfig closing = config();
+  closing.use = Use::close_loops;
+  closing.exclude = 1;
+  const auto drive = oracle::drive(1, 5, 16);
+  PlaceMap map(closing, {100, 16});
+  Detector detector(closing, map);
+  SourceNumbers numbers(closing, &map);
+  static_cast<void>(detector.step(drive[0]));
   ProcessedFrame first = processed(7, 0);  // a live source that was late
   numbers.rename(first);
   EXPECT_EQ(first.report.newest, 7U);
+  for (const std::size_t frame : {1U, 2U, 3U}) static_cast<void>(detector.step(drive[frame]));
   ProcessedFrame second = processed(10, 3);  // 8 and 9 never came; the detector counted them
   numbers.rename(second);
   EXPECT_EQ(second.report.newest, 10U);
   EXPECT_EQ(second.report.frame, 8U);
+  static_cast<void>(detector.step(drive[4]));
   ProcessedFrame third = processed(500, 4);  // the detector left the gap out
   third.report.match = Match{.place = 1, .head = 4};
   const std::array answers{about(0), about(3), about(4)};

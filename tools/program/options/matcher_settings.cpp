@@ -69,10 +69,20 @@ FullMap parse_full_map(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is none of refuse, forget-oldest, thin");
 }
 
+/// Whether the probability was measured for such a configuration: descriptors compared by Euclid,
+/// candidates from a scan, windows that fit into the patience.
+bool calibrated(const MatcherConfig& config) {
+  constexpr std::size_t longest = 20;
+  return config.difference == Difference::euclidean && !config.enhance && relocalises(config) &&
+         config.sequence_length <= longest;
+}
+
 /// What accepts a match. A threshold of the other kind would do nothing, and is a fault.
 void resolve_decision(const MatcherSettings& settings, MatcherConfig& config, Faults& faults) {
+  const bool asked = settings.min_probability || settings.patience;
+  const bool probability = !settings.paper && (asked || calibrated(config));
   config.decision =
-      settings.decision.value_or(settings.paper ? Decision::uniqueness : Decision::probability);
+      settings.decision.value_or(probability ? Decision::probability : Decision::uniqueness);
   config.min_probability = settings.min_probability.value_or(config.min_probability);
   config.patience = settings.patience.value_or(config.patience);
   config.max_uniqueness = settings.max_uniqueness.value_or(config.max_uniqueness);
@@ -161,7 +171,8 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.section("Decision", Shown::in_help_all);
   options.add(
       {"decide-by", ValueKind::text,
-       "what accepts a match: probability or uniqueness [probability; uniqueness under --paper]",
+       "what accepts a match: probability or uniqueness [probability for a- and o-seqcnnslam up to "
+       "--ds 20, otherwise uniqueness]",
        [&settings](std::string_view value) { settings.decision = parse_decision(value); }});
   options.add({"max-uniqueness", ValueKind::number,
                "by uniqueness: a match is accepted up to this, above 0 to 1 [0.94]",
