@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/source_numbers.hpp"
 
-#include <algorithm>
-#include <ranges>
-
 namespace seqloop::program {
 namespace {
 
@@ -60,10 +57,18 @@ std::uint64_t SourceNumbers::frame(std::uint64_t counted) const noexcept {
 }
 
 std::size_t SourceNumbers::place(std::size_t number) const noexcept {
-  const auto rows = std::views::iota(std::size_t{0}, map_->size());
-  const auto row = std::ranges::lower_bound(
-      rows, number, {}, [&](std::size_t candidate) { return at(map_->order().number(candidate)); });
-  return row == rows.end() ? number : at(places_[map_->order().slot(*row)]);
+  // The first row of this number or a higher one.
+  std::size_t first = 0;
+  std::size_t end = map_->size();
+  while (first < end) {
+    const std::size_t middle = first + (end - first) / 2;
+    if (at(map_->order().number(middle)) < number) {
+      first = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return first == map_->size() ? number : at(places_[map_->order().slot(first)]);
 }
 
 void SourceNumbers::rename(std::optional<Match>& match) const noexcept {
