@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a user gets wrong: each is exit code 2, a line that says what, why and what to do, and no
 // output file.
+#include <cmath>
 #include <limits>
 
 #include "core/oracle.hpp"
@@ -101,6 +102,46 @@ TEST_F(BadInput, Numbers) {
   expect_match_refused(drives + "--enhance on --rwindow 1", {"rwindow: 1", "enhance"});
   expect_match_refused("--query good.npy --ds 4 --enhance on --exclude 5",
                        {"exclude: 5", "rwindow"});
+}
+
+TEST_F(BadInput, WhatDecides) {
+  const std::string drives = "--reference good.npy --query good.npy ";
+  for (const std::string wrong : {"0", "-1", "2"}) {
+    expect_match_refused(drives + "--min-probability " + wrong,
+                         {"min-probability", "above 0 and at most 1"});
+  }
+  expect_match_refused(drives + "--min-probability nan", {"min-probability", "'nan'"});
+  expect_match_refused(drives + "--patience 1001", {"patience: 1001", "1000"});
+  expect_refused("match --out m.csv " + drives + "--max-uniqueness 0.9",
+                 {"max-uniqueness", "probability", "--decide-by uniqueness"});
+  expect_match_refused(drives + "--decide-by luck", {"decide-by", "'luck'"});
+}
+
+TEST_F(BadInput, DrivesThatSayNothingAreAnsweredAndNotAccepted) {
+  constexpr std::size_t size = 12;
+  write_npy("one.npy", oracle::drive(1, 1, size));
+  expect_match_refused("--reference good.npy --query one.npy", {"ds", "21", "1 frames"});
+  EXPECT_EQ(run("match --reference good.npy --query one.npy --method single --out m.csv").exit_code,
+            0);
+  write_npy("black.npy", oracle::Vectors(150, std::vector<float>(size)));
+  write_npy(
+      "constant.npy",
+      oracle::Vectors(150, std::vector<float>(size, 1.0F / std::sqrt(static_cast<float>(size)))));
+  for (const std::string drive : {"black", "constant"}) {
+    const std::vector<std::string> ways{" --reference good.npy", " --reference " + drive + ".npy",
+                                        " --exclude 30"};
+    for (const std::string& how : ways) {
+      SCOPED_TRACE(drive + how);
+      const test::Outcome matched = run("match --query " + drive + ".npy --out m.csv" + how);
+      EXPECT_EQ(matched.exit_code, 0) << matched.err;
+      EXPECT_EQ(test::read_all(file("m.csv")).find(",1\n"), std::string::npos);
+      const test::Outcome outcome = run("run --source " + drive + ".npy --out r.jsonl" + how);
+      // Nothing can be read of a drive that is black from end to end.
+      EXPECT_EQ(outcome.exit_code, drive == "black" ? 2 : 0) << outcome.err;
+      if (drive == "black") continue;
+      EXPECT_EQ(test::read_all(file("r.jsonl")).find("\"status\":\"match\""), std::string::npos);
+    }
+  }
 }
 
 TEST_F(BadInput, EveryFaultAtOnce) {
