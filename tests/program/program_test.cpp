@@ -329,7 +329,8 @@ TEST_F(Run, EveryFrameHasOneFinalAnswer) {
   write_npy("r.npy", oracle::drive(5, 130, 20, 0.2F));
   write_npy("q.npy", oracle::drive(5, 110, 20, 0.3F));
   for (const std::string flags : {"", " --patience 0", " --patience 1000", " --frames 47",
-                                  " --method seqcnnslam", " --method single"}) {
+                                  " --method seqcnnslam --decide-by probability",
+                                  " --method single --decide-by probability"}) {
     SCOPED_TRACE(flags);
     const auto outcome =
         expect_done("run --reference r.npy --source q.npy --out r.jsonl --summary s.json" + flags);
