@@ -370,7 +370,8 @@ TEST_F(Run, EveryFrameHasOneFinalAnswer) {
       }
     }
     EXPECT_EQ(std::ranges::count(answers, nlohmann::json()), 0);
-    for (const auto& [gate, count] : json_of("s.json")["gates"].items()) {
+    const nlohmann::json summary = json_of("s.json");
+    for (const auto& [gate, count] : summary["gates"].items()) {
       EXPECT_EQ(count, gates[gate]) << gate;
     }
     EXPECT_GT(gates["match"], 20U) << outcome.err;
