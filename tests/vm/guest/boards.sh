@@ -39,7 +39,6 @@ board() {
 
 FEEDER=$(launcher aarch64 aarch64-linux-gnu v4l2-feeder "$FEEDER")
 export FEEDER
-export PATIENCE=4
 board armhf arm-linux-gnueabihf lists_the_camera reads_a_multiplanar_camera \
   does_not_believe_stamps_from_the_future survives_a_disconnect plays_mjpg
 board aarch64 aarch64-linux-gnu lists_the_camera counts_on_when_the_sequence_number_wraps \

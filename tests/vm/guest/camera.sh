@@ -13,7 +13,7 @@ lists_the_camera() {
 captures_at_full_rate() {
   camera
   log=$WORK/capture.log
-  timeout 60 "$SEQLOOP" camera --device /dev/video0 --frames 50 --format YUYV --size 640x480 --fps 25 >"$log" 2>&1
+  timeout $((60 * PATIENCE)) "$SEQLOOP" camera --device /dev/video0 --frames 50 --format YUYV --size 640x480 --fps 25 >"$log" 2>&1
   expect "the capture ends well" [ $? = 0 ]
   cp "$log" "$OUT/capture.txt"
 }
@@ -80,7 +80,7 @@ says_that_the_camera_is_busy() {
   camera
   v4l2-ctl --stream-mmap --stream-count=0 >/dev/null 2>&1 &
   local other=$!
-  sleep 1
+  sleep "$PATIENCE"
   expect "it says why" refused 2 busy --source /dev/video0 $small
   kill "$other"
   wait "$other" 2>/dev/null
@@ -92,7 +92,7 @@ ends_whole() {
   local out=$WORK/whole-$1.jsonl
   live --source /dev/video0 $small --out "$out"
   expect "the device is open" within 15 holds /dev/video0
-  sleep 3
+  sleep $((2 + PATIENCE))
   kill -"$1" "$live"
   expect "exit code 0" ends 0
   expect "the output is there" [ -s "$out" ]

@@ -6,6 +6,15 @@ set +m
 cd "$WORK"
 failed=0
 
+# How many times as long to wait for what should come: by how long this machine, and whatever runs
+# beside it, takes to start the program for the first time. Waits end when what they wait for is there.
+if [ -z "${PATIENCE:-}" ]; then
+  start=$(date +%s)
+  "$SEQLOOP" --version >/dev/null
+  export PATIENCE=$((2 + $(date +%s) - start))
+  echo "patience $PATIENCE"
+fi
+
 # run_case NAME: runs the function of that name; prints PASS, or FAIL with all that was not as expected
 run_case() {
   why= lines=/dev/null log=/dev/null live=
@@ -40,10 +49,10 @@ expect() {
   return 1
 }
 
-# within SECONDS COMMAND...: waits until the command succeeds, but no longer than the live run lasts;
-# PATIENCE, if set, times as long
+# within SECONDS COMMAND...: waits until the command succeeds, PATIENCE times so long at most, but no
+# longer than the live run lasts
 within() {
-  local end=$((SECONDS + $1 * ${PATIENCE:-1}))
+  local end=$((SECONDS + $1 * PATIENCE))
   shift
   until "$@"; do
     ((SECONDS < end)) || return 1
@@ -115,7 +124,7 @@ refused() {
   local code=$1 text=$2
   shift 2
   log=$WORK/refused.log
-  timeout $((30 * ${PATIENCE:-1})) "$SEQLOOP" run --frames 5 "$@" >/dev/null 2>"$log"
+  timeout $((30 * PATIENCE)) "$SEQLOOP" run --frames 5 "$@" >/dev/null 2>"$log"
   local got=$?
   [ "$got" = "$code" ] || { echo "exit code $got"; return 1; }
   grep -qi "^seqloop: .*$text" "$log"

@@ -14,7 +14,7 @@ feed() {
 # The moment is for the buffers: nothing outside the reader shows that it has started.
 reader_waits() {
   expect "the device is open" within 15 holds /dev/video5
-  sleep 1
+  sleep "$PATIENCE"
 }
 
 # plays FRAMES FEEDER_FLAGS...: all lines of a run that ends after FRAMES
