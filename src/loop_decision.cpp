@@ -39,7 +39,7 @@ std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
   if (best.scored == 0) return std::nullopt;
   const auto outside = [&](std::size_t row) {
-    return row + half_window_ < best.row || row > best.row + half_window_;
+    return row + half_rwindow_ < best.row || row > best.row + half_rwindow_;
   };
   Lowest runner_up = lowest(scores, runs, outside);
   for (const CandidateProposals::Proposal& proposal : proposals) {
@@ -52,7 +52,7 @@ std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
     runner_up.row = proposal.centre;
     runner_up.score = proposal.difference;
   }
-  const std::optional<double> past = past_.lowest(best.row, half_window_, rows);
+  const std::optional<double> past = past_.lowest(best.row, half_rwindow_, rows);
   past_.remember({best.row, best.score});
   if (runner_up.scored > 0) past_.remember({runner_up.row, runner_up.score});
   if (past) runner_up = {runner_up.row, std::min(runner_up.score, *past), runner_up.scored + 1};

@@ -24,7 +24,7 @@ RunnerUpHistory::RunnerUpHistory(Arena& arena, const MatcherConfig& config)
       seen_(arena.take<Seen>("runners-up of the last frames", rows_a_frame * frames_kept(config))) {
 }
 
-std::optional<double> RunnerUpHistory::lowest(std::size_t best, std::size_t half_window,
+std::optional<double> RunnerUpHistory::lowest(std::size_t best, std::size_t half_rwindow,
                                               std::size_t rows) const noexcept {
   const std::size_t other_scans = (std::max<std::size_t>(rows, 1) - 1) / rows_a_scan_;
   const std::size_t frames = std::min(rounds * other_scans, seen_.size() / rows_a_frame);
@@ -35,7 +35,7 @@ std::optional<double> RunnerUpHistory::lowest(std::size_t best, std::size_t half
     if (age > frames) continue;
     // It may have moved a row a frame, or none, or two.
     const std::uint64_t row = seen.row.row + age;
-    const std::uint64_t near = half_window + age;
+    const std::uint64_t near = half_rwindow + age;
     if (row + near >= best && row <= best + near) continue;
     lowest = std::min(lowest.value_or(seen.row.score), seen.row.score);
   }

@@ -28,7 +28,7 @@ class LoopDecision {
  public:
   /// Allocates: from the arena only.
   LoopDecision(Arena& arena, const MatcherConfig& config)
-      : half_window_(config.rwindow / 2), past_(arena, config) {}
+      : half_rwindow_(config.rwindow / 2), past_(arena, config) {}
 
   /// @param scores [places], infinity for a row that no line fits
   /// @param keep_runner_up whether this frame's runner-up stands in later, at frames whose
@@ -52,7 +52,7 @@ class LoopDecision {
   void restart() noexcept { past_.restart(); }
 
  private:
-  std::size_t half_window_;
+  std::size_t half_rwindow_;
   RunnerUpHistory past_;
   std::optional<double> last_runner_up_;
 };

@@ -29,12 +29,12 @@ class RunnerUpHistory {
   void next() noexcept { ++now_; }
 
   /// @param best        the frame's best row
-  /// @param half_window rows around it that cannot be the runner-up
+  /// @param half_rwindow rows around it that cannot be the runner-up
   /// @param rows        rows of the map that may be searched: where one scan takes them all, the
   /// frame has seen every one of them itself
   /// @return the lowest score of the last frames' rows; none where there is none
   /// Work: ds rows at most. Allocates: never.
-  [[nodiscard]] std::optional<double> lowest(std::size_t best, std::size_t half_window,
+  [[nodiscard]] std::optional<double> lowest(std::size_t best, std::size_t half_rwindow,
                                              std::size_t rows) const noexcept;
 
   /// Remembers a row of this frame, at most two of them.
