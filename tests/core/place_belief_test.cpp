@@ -167,7 +167,8 @@ TEST(PlaceBelief, ACarriedRobotLosesItsBeliefAndFindsItself) {
   std::size_t wrong = 0;
   for (const Answer& answer : said.answers) {
     if (answer.gate != Gate::match) continue;
-    const auto off = static_cast<int>(answer.match->place) - static_cast<int>(truth[answer.frame]);
+    const std::size_t there = truth[static_cast<std::size_t>(answer.frame)];
+    const auto off = static_cast<int>(answer.match->place) - static_cast<int>(there);
     if (std::abs(off) > 10) ++wrong;
   }
   EXPECT_LE(wrong, query.size() / 500) << "a frame after being carried, now and then";

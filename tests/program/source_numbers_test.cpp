@@ -143,7 +143,8 @@ TEST(SourceNumbers, OfAMapThatForgets) {
     for (const auto& descriptor : oracle::drive(1, 500, size)) {
       static_cast<void>(detector.step(descriptor));
       ProcessedFrame frame = processed(counted + 1000, counted);
-      const std::uint64_t place = map.order().number((counted * 7) % map.size());
+      const auto row = static_cast<std::size_t>((counted * 7) % map.size());
+      const auto place = static_cast<std::size_t>(map.order().number(row));
       frame.report.match = Match{.place = place, .head = place};
       numbers.rename(frame);
       ASSERT_EQ(frame.report.match->place, place + 1000);
