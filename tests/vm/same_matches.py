@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Compares two runs of `seqloop run` over the same pictures: every frame must have the same answer.
+"""Compares two runs of `seqloop run` over the same pictures: the answers must be the same.
 
 Usage: same_matches.py LIVE.jsonl RECORDED.jsonl
 """
@@ -9,15 +9,16 @@ import sys
 
 
 def answers(path):
-    """Of each frame in order: the centre that the answer is about, and the place that it matched."""
+    """In the order in which they became due: the frame, its status, and the place that it matched."""
     with open(path) as lines:
-        return [(line["frame"], line["match"]) for line in map(json.loads, lines)]
+        due = [answer for line in lines for answer in json.loads(line)["answers"]]
+    return [(answer["frame"], answer["status"], answer["match"]) for answer in due]
 
 
 live, recorded = (answers(path) for path in sys.argv[1:3])
 different = [number for number, pair in enumerate(zip(live, recorded)) if pair[0] != pair[1]]
-matched = sum(match is not None for _, match in recorded)
-print(f"{len(live)} and {len(recorded)} frames, {matched} matched, {len(different)} different")
+matched = sum(match is not None for *_, match in recorded)
+print(f"{len(live)} and {len(recorded)} answers, {matched} matched, {len(different)} different")
 for number in different[:10]:
-    print(f"frame {number}: (centre, match) {live[number]}, recorded {recorded[number]}")
+    print(f"answer {number}: {live[number]}, recorded {recorded[number]}")
 sys.exit(bool(different) or len(live) != len(recorded) or matched == 0)
