@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace seqloop::sqlite {
+
+/// What all places of a map have in common: only such places can be compared.
+struct MapForm {
+  std::string form;       ///< how a place is kept, in the caller's words: "int8 euclidean"
+  std::string describer;  ///< fingerprint of the model and its settings that made the descriptors
+  std::uint64_t descriptor_size = 0;  ///< D
+  std::uint64_t place_bytes = 0;      ///< of each place, 1 .. 2^26
+
+  bool operator==(const MapForm&) const = default;
+};
+
+/// A stretch of driving: its places follow each other.
+struct SessionFacts {
+  std::int64_t id = 0;        ///< 1, 2, …; never given again
+  std::string name;           ///< of no other session of this map
+  std::int64_t began_ns = 0;  ///< since 1970
+  std::string settings;       ///< text of the caller
+  std::uint64_t frames = 0;   ///< how many frames, from its first on, are saved for good
+  std::uint64_t places = 0;   ///< as far as they were not removed
+};
+
+/// By what the places of a session were standardised.
+struct SavedStatistics {
+  std::uint64_t frames = 0;
+  std::vector<double> mean;      ///< [D]
+  std::vector<double> variance;  ///< [D]
+
+  bool operator==(const SavedStatistics&) const = default;
+};
+
+/// What is known of one place beside its bytes.
+struct PlaceRecord {
+  std::uint64_t number = 0;  ///< in the map; never given again, below 2^62
+  std::uint64_t frame = 0;   ///< of its session
+  std::int64_t time_ns = 0;  ///< of that frame, in the session's own clock
+
+  bool operator==(const PlaceRecord&) const = default;
+};
+
+/// A frame was at a place that the map had already.
+struct SavedLink {
+  std::int64_t session = 0;
+  std::uint64_t frame = 0;
+  std::optional<std::uint64_t> place;  ///< what the frame became itself; nothing for a visit
+  std::uint64_t other = 0;             ///< the place that it was at; may be removed meanwhile
+  double probability = 0.0;
+
+  bool operator==(const SavedLink&) const = default;
+};
+
+struct SavedThumbnail {
+  std::uint64_t place = 0;
+  std::vector<std::byte> jpeg;
+
+  bool operator==(const SavedThumbnail&) const = default;
+};
+
+/// What is saved at once: all of it or nothing.
+struct MapBatch {
+  std::uint64_t frames = 0;                ///< of the session are dealt with, these among them
+  std::span<const PlaceRecord> records{};  ///< new places; numbers ascend, from `next_place` on
+  std::span<const std::byte> places{};     ///< [records * place_bytes]
+  std::span<const SavedLink> links{};      ///< `session` is not looked at
+  std::span<const SavedThumbnail> thumbnails{};
+  std::span<const std::uint64_t> removed{};     ///< places that go; unknown ones are left out
+  const SavedStatistics* statistics = nullptr;  ///< nothing: as they were
+};
+
+/// Places that follow each other in a session, as `read` hands them over.
+struct PlaceBlock {
+  std::int64_t session = 0;
+  std::span<const PlaceRecord> records;  ///< numbers ascend
+  std::span<const std::byte> places;     ///< [records * place_bytes]
+};
+
+/// A save that failed while running; what was saved before is safe, and the same call may be tried
+/// again. `what()` is `WHAT: WHY; REMEDY`.
+class SaveError : public std::runtime_error {
+ public:
+  using runtime_error::runtime_error;
+};
+
+/// A map of many sessions in one SQLite database; README.md here has its schema.
+///
+/// One process at a time may write; others read meanwhile, and see what was saved when they
+/// began to. What `save` returned from survives a killed process and cut power at any moment. A
+/// file that is not open is one file; while it is written, and after a kill, `FILE-wal` belongs to
+/// it. Open a file once in a process. Not for several threads at once. Allocates freely.
+class MapFile {
+ public:
+  /// Opens a map to read. Throws SetupError: no such file, no map, of a newer version, damaged.
+  [[nodiscard]] static MapFile read_only(const std::filesystem::path& path);
+
+  /// Opens a map to write; a file that is missing or empty becomes one.
+  /// @param form of what is to be saved; nothing: as the map's is, which must exist
+  /// Throws SetupError as `read_only`, and: held by another process (which, on which machine), not
+  /// writable, of another form.
+  [[nodiscard]] static MapFile open(const std::filesystem::path& path,
+                                    const std::optional<MapForm>& form);
+
+  MapFile(MapFile&&) noexcept;
+  MapFile& operator=(MapFile&&) noexcept;
+  MapFile(const MapFile&) = delete;
+  MapFile& operator=(const MapFile&) = delete;
+  ~MapFile();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept;
+  [[nodiscard]] const MapForm& form() const noexcept;
+
+  /// All sessions, oldest first. Throws SetupError: damaged.
+  [[nodiscard]] std::vector<SessionFacts> sessions() const;
+
+  /// The number that the next place gets, at least. Numbers of places that went are not used again.
+  [[nodiscard]] std::uint64_t next_place() const;
+
+  /// All places, the oldest first, block after block; each block's checksum is looked at.
+  /// @param take what it is given is valid during the call; how far it is, is the caller's sum
+  /// @param damaged told of each damaged block, which is left out; nothing: SetupError
+  /// Work: the whole file, once. Throws SetupError: damaged.
+  void read(const std::function<void(const PlaceBlock&)>& take,
+            const std::function<void(const std::string&)>& damaged = {}) const;
+
+  /// Nothing when none was saved. Throws SetupError: damaged.
+  [[nodiscard]] std::optional<SavedStatistics> statistics(std::int64_t session) const;
+  /// All of them, in the order in which they were saved. Throw SetupError: damaged.
+  void read_links(const std::function<void(const SavedLink&)>& take) const;
+  void read_thumbnails(const std::function<void(const SavedThumbnail&)>& take) const;
+  [[nodiscard]] std::optional<SavedThumbnail> thumbnail(std::uint64_t place) const;
+
+  /// Everything that is wrong with the file, as far as it can be told: every row's checksum, sums,
+  /// and SQLite's own structure. Empty: nothing. Work: the whole file, twice.
+  [[nodiscard]] std::vector<std::string> check() const;
+
+  /// Begins a session; only the newest one grows.
+  /// @return its id. Throws SetupError: the name is taken or empty; SaveError.
+  std::int64_t begin_session(const std::string& name, std::int64_t began_ns,
+                             const std::string& settings);
+
+  /// Saves a batch. When this returns, it survives cut power. May take as long as the disk does.
+  /// @param session the newest one
+  /// Throws SaveError: disk full, not writable, …: nothing of it is saved, the map is as before.
+  /// std::invalid_argument: another session, numbers or sizes that do not fit.
+  void save(std::int64_t session, const MapBatch& batch);
+
+  /// Removes a session with its places, thumbnails and links to them; others keep their numbers.
+  /// Throws SetupError: no such name; SaveError.
+  void forget(const std::string& session);
+
+  /// Copies a session with all that belongs to it from another map behind this one's.
+  /// @param name its name here
+  /// @return what is added to its places' numbers. Throws SetupError: the name is taken, another
+  ///   form, damaged; SaveError.
+  std::uint64_t copy_session(const MapFile& from, std::int64_t session, const std::string& name);
+
+  /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.
+  /// Throws SaveError.
+  void compact();
+
+ private:
+  struct State;
+  explicit MapFile(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace seqloop::sqlite
