@@ -14,7 +14,7 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
            "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
 
 # The outside worlds, and our own rooms that none of them may look into.
-WORLDS = {"files", "linux", "opencv", "turbojpeg"}
+WORLDS = {"files", "linux", "opencv", "sqlite", "turbojpeg"}
 OURS = {"seqloop", "evaluation", "experiment", "program", "street", "synthetic"}
 
 # Rooms of tools/, and the others that each looks into.
@@ -29,7 +29,7 @@ INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}
 EIGENVECTORS = ("src", "principal_components.cpp")
 
 # Libraries that belong to one outside world.
-LIBRARIES = {"opencv2": "opencv", "turbojpeg.h": "turbojpeg"}
+LIBRARIES = {"opencv2": "opencv", "sqlite3.h": "sqlite", "turbojpeg.h": "turbojpeg"}
 
 
 def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:

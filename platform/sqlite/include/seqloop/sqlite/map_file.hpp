@@ -161,11 +161,10 @@ class MapFile {
   /// Throws SetupError: no such name; SaveError.
   void forget(const std::string& session);
 
-  /// Copies a session with all that belongs to it from another map behind this one's.
-  /// @param name its name here
-  /// @return what is added to its places' numbers. Throws SetupError: the name is taken, another
-  ///   form, damaged; SaveError.
-  std::uint64_t copy_session(const MapFile& from, std::int64_t session, const std::string& name);
+  /// Copies all sessions of another map behind this one's. A name that is taken gets a number.
+  /// @return what is added to its places' numbers. Throws SetupError: another form, damaged;
+  ///   SaveError: sessions may be copied in part
+  std::uint64_t add(const MapFile& from);
 
   /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.
   /// Throws SaveError.

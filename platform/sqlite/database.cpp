@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "sqlite/database.hpp"
+
+#include <limits>
+
+namespace seqloop::sqlite {
+namespace {
+
+// A reader that closes, or a checkpoint, holds a lock for moments.
+constexpr int wait_ms = 2000;
+
+}  // namespace
+
+Fault fault_of(const std::filesystem::path& path, const DatabaseError& error) {
+  const std::string name = path.string();
+  switch (error.primary()) {
+    case SQLITE_NOTADB:
+      return {name,
+              "no SeqLoop map: it is not even an SQLite database, or its first page is damaged",
+              "name a map; if it was one, `seqloop map recover` finds what is left of it"};
+    case SQLITE_CORRUPT:
+    case SQLITE_ERROR:  // the schema lacks what it must have
+      return {name, std::string("the map is damaged (") + error.what() + ")",
+              "`seqloop map recover` copies what is whole into a new file"};
+    case SQLITE_FULL:
+      return {name, "the disk is full", "make room; nothing that was saved is lost"};
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return {name, "another program holds the database", "end it, or wait for it"};
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+      return {name, std::string("cannot be opened or written (") + error.what() + ")",
+              "look at the rights of the file and of its folder"};
+    case SQLITE_NOMEM:
+    case SQLITE_TOOBIG:
+      return {name, std::string("does not fit in memory (") + error.what() + ")"};
+    default:
+      return {name, std::string("cannot be read or written (") + error.what() + ")",
+              "look at the disk; what was saved before is safe if the disk is"};
+  }
+}
+
+Database::Database(const std::filesystem::path& path, int flags, const char* vfs) {
+  // An absolute name is no URI, whatever it begins with.
+  const std::string name = std::filesystem::absolute(path).string();
+  const int code = sqlite3_open_v2(name.c_str(), &handle_, flags, vfs);
+  try {
+    if (handle_ == nullptr) throw DatabaseError(SQLITE_NOMEM, "out of memory");
+    check(code);
+    sqlite3_extended_result_codes(handle_, 1);
+    sqlite3_busy_timeout(handle_, wait_ms);
+    // A foreign file's triggers and views must not do more than what is asked here.
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    execute("PRAGMA cell_size_check = ON");
+  } catch (...) {
+    sqlite3_close_v2(handle_);
+    throw;
+  }
+}
+
+Database::~Database() { sqlite3_close_v2(handle_); }
+
+void Database::check(int code) const {
+  if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
+  throw DatabaseError(sqlite3_extended_errcode(handle_), sqlite3_errmsg(handle_));
+}
+
+void Database::execute(const std::string& sql) {
+  check(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+Statement Database::prepare(std::string_view sql) { return {*this, sql}; }
+
+std::int64_t Database::number(std::string_view sql) {
+  Statement statement(*this, sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+std::string Database::text(std::string_view sql) {
+  Statement statement(*this, sql);
+  return statement.step() ? statement.text(0) : std::string();
+}
+
+Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
+  database.check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()),
+                                    &statement_, nullptr));
+}
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_);
+  if (code == SQLITE_ROW) return true;
+  if (code == SQLITE_DONE) return false;
+  const DatabaseError error(sqlite3_extended_errcode(database_->handle()),
+                            sqlite3_errmsg(database_->handle()));
+  sqlite3_reset(statement_);
+  throw error;
+}
+
+std::span<const std::byte> Statement::blob(int column) const {
+  const void* data = sqlite3_column_blob(statement_, column);
+  const int size = sqlite3_column_bytes(statement_, column);
+  if (data == nullptr) {
+    if (sqlite3_errcode(database_->handle()) == SQLITE_NOMEM) {
+      throw DatabaseError(SQLITE_NOMEM, "out of memory");
+    }
+    return {};
+  }
+  return {static_cast<const std::byte*>(data), static_cast<std::size_t>(size)};
+}
+
+std::string Statement::text(int column) const {
+  const std::span<const std::byte> bytes = blob(column);
+  std::string text(bytes.size(), '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) text[i] = std::to_integer<char>(bytes[i]);
+  return text;
+}
+
+void Statement::bind(int index, std::int64_t value) {
+  database_->check(sqlite3_bind_int64(statement_, index, value));
+}
+
+void Statement::bind(int index, double value) {
+  database_->check(sqlite3_bind_double(statement_, index, value));
+}
+
+void Statement::bind(int index, std::string_view value) {
+  database_->check(sqlite3_bind_text64(statement_, index,
+                                       value.data() == nullptr ? "" : value.data(), value.size(),
+                                       SQLITE_STATIC, SQLITE_UTF8));
+}
+
+void Statement::bind(int index, std::span<const std::byte> value) {
+  database_->check(value.empty() ? sqlite3_bind_zeroblob(statement_, index, 0)
+                                 : sqlite3_bind_blob64(statement_, index, value.data(),
+                                                       value.size(), SQLITE_STATIC));
+}
+
+void Statement::bind(int index, const std::optional<std::int64_t>& value) {
+  if (value) {
+    bind(index, *value);
+  } else {
+    database_->check(sqlite3_bind_null(statement_, index));
+  }
+}
+
+Transaction::~Transaction() {
+  // After some errors SQLite has rolled back already.
+  if (sqlite3_get_autocommit(database_.handle()) == 0) {
+    sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+}
+
+void Transaction::commit() { database_.execute("COMMIT"); }
+
+}  // namespace seqloop::sqlite

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/sqlite/map_file.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "sqlite/state.hpp"
+
+namespace seqloop::sqlite {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Pages of the write-ahead log after which they go into the file itself: 8 MB.
+constexpr int checkpoint_pages = 1000;
+
+void check_form(const fs::path& path, const MapForm& form) {
+  if (form.place_bytes >= 1 && form.place_bytes <= most_place_bytes) return;
+  throw SetupError({path.string(), "places of " + std::to_string(form.place_bytes) + " bytes",
+                    "1 to " + std::to_string(most_place_bytes) + " can be saved"});
+}
+
+Fault other_form(const fs::path& path, const MapForm& there, const MapForm& wanted) {
+  std::string why;
+  const auto tell = [&why](const std::string& what, const auto& is, const auto& asked) {
+    if (is == asked) return;
+    why += (why.empty() ? "" : ", ") + what + " " + is + " and not " + asked;
+  };
+  tell("form", there.form, wanted.form);
+  tell("described by", there.describer, wanted.describer);
+  tell("descriptor size", std::to_string(there.descriptor_size),
+       std::to_string(wanted.descriptor_size));
+  tell("bytes of a place", std::to_string(there.place_bytes), std::to_string(wanted.place_bytes));
+  return {path.string(), "its places cannot be compared with these: " + why,
+          "use the settings that it was made with, or another file"};
+}
+
+/// Whether the database is a map, in a version that is known here. Throws SetupError.
+void check_kind(const fs::path& path, Database& database) {
+  const std::string name = path.string();
+  const std::int64_t id = database.number("PRAGMA application_id");
+  if (id != application_id) {
+    throw SetupError({name, "an SQLite database, but no SeqLoop map", "name a map"});
+  }
+  const std::int64_t version = database.number("PRAGMA user_version");
+  if (version > user_version) {
+    throw SetupError({name,
+                      "written by a newer SeqLoop, in version " + std::to_string(version) +
+                          " of the file; this one knows version " + std::to_string(user_version),
+                      "use the newer one"});
+  }
+  if (version < 1) {
+    throw SetupError({name, "its version, " + std::to_string(version) + ", is none of a map",
+                      "`seqloop map recover` copies what is whole into a new file"});
+  }
+}
+
+void check_file(const fs::path& path) {
+  struct stat status {};
+  const std::string name = path.string();
+  if (::stat(path.c_str(), &status) != 0) {
+    throw SetupError(
+        {name, "there is no such map", "name a map, or make one with `seqloop run --map`"});
+  }
+  if (!S_ISREG(status.st_mode)) throw SetupError({name, "is no file", "name a map"});
+  if (::access(path.c_str(), R_OK) != 0) {
+    throw SetupError({name, "must not be read", "look at the rights of the file"});
+  }
+}
+
+}  // namespace
+
+MapFile::State::~State() {
+  if (!writes) return;
+  try {  // one file without a log beside it, where nobody reads it just now
+    database.execute("PRAGMA journal_mode = DELETE");
+  } catch (const DatabaseError&) {  // the log stays and is read with the file
+  }
+}
+
+void MapFile::State::load_map_row() {
+  Statement row(database,
+                "SELECT form, describer, descriptor_size, place_bytes, next_place, next_session, "
+                "checksum FROM map");
+  if (!row.step()) throw SetupError(damaged("what the map says of itself"));
+  form = {row.text(0), row.text(1), static_cast<std::uint64_t>(row.integer(2)),
+          static_cast<std::uint64_t>(row.integer(3))};
+  next_place = row.integer(4);
+  next_session = row.integer(5);
+  if (map_sum(form, next_place, next_session) != row.integer(6) || form.place_bytes < 1 ||
+      form.place_bytes > most_place_bytes) {
+    throw SetupError(damaged("what the map says of itself"));
+  }
+}
+
+void MapFile::State::save_map_row() {
+  Statement(database, "INSERT OR REPLACE INTO map VALUES(1, ?, ?, ?, ?, ?, ?, ?)")
+      .with(std::string_view(form.form), std::string_view(form.describer),
+            static_cast<std::int64_t>(form.descriptor_size),
+            static_cast<std::int64_t>(form.place_bytes), next_place, next_session,
+            map_sum(form, next_place, next_session))
+      .run();
+}
+
+void MapFile::State::make(const MapForm& wanted) {
+  form = wanted;
+  Transaction transaction(database);
+  database.execute("PRAGMA application_id = " + std::to_string(application_id) +
+                   "; PRAGMA user_version = " + std::to_string(user_version));
+  database.execute(schema_sql);
+  save_map_row();
+  transaction.commit();
+}
+
+MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {
+  if (form) {
+    check_form(path, *form);
+  } else {
+    check_file(path);
+  }
+  Holder holder(path);
+  try {
+    auto state = std::make_unique<State>(path, std::move(holder),
+                                         SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    Database& database = state->database;
+    // In the log, FULL would do; EXTRA is for the moments in which there is none.
+    database.execute("PRAGMA page_size = " + std::to_string(page_size) +
+                     "; PRAGMA synchronous = EXTRA; PRAGMA wal_autocheckpoint = " +
+                     std::to_string(checkpoint_pages));
+    if (database.number("PRAGMA page_count") == 0) {
+      if (!form) {
+        throw SetupError({path.string(), "is empty: nothing was saved in it", "name a map"});
+      }
+      state->make(*form);
+    } else {
+      check_kind(path, database);
+      state->load_map_row();
+      if (form && *form != state->form) {
+        throw SetupError(other_form(path, state->form, *form));
+      }
+    }
+    if (database.text("PRAGMA journal_mode = WAL") != "wal") {
+      throw SetupError({path.string(), "this file system cannot keep a log beside the map",
+                        "put the map on a local disk"});
+    }
+    state->writes = true;
+    sign(database);
+    return MapFile(std::move(state));
+  } catch (const DatabaseError& error) {
+    throw SetupError(fault_of(path, error));
+  }
+}
+
+MapFile MapFile::read_only(const fs::path& path) {
+  check_file(path);
+  std::error_code error;
+  const auto begin = [&](const char* vfs) {
+    auto state = std::make_unique<State>(path, Holder(), SQLITE_OPEN_READONLY, vfs);
+    // Where nobody can write, nobody does: no locks are needed, and the log is looked up in memory.
+    if (vfs != nullptr) state->database.execute("PRAGMA locking_mode = EXCLUSIVE");
+    // From here on, what is read is of one moment.
+    state->database.execute("BEGIN");
+    if (state->database.number("PRAGMA page_count") == 0) {
+      throw SetupError({path.string(), "is empty: nothing was saved in it", "name a map"});
+    }
+    check_kind(path, state->database);
+    state->load_map_row();
+    return MapFile(std::move(state));
+  };
+  try {
+    try {
+      return begin(nullptr);
+    } catch (const DatabaseError& refused) {
+      const fs::path folder = fs::absolute(path).parent_path();
+      const bool fixed = ::access(folder.c_str(), W_OK) != 0;
+      if (!fixed ||
+          (refused.primary() != SQLITE_CANTOPEN && refused.primary() != SQLITE_READONLY)) {
+        throw;
+      }
+      return begin("unix-none");
+    }
+  } catch (const DatabaseError& refused) {
+    throw SetupError(fault_of(path, refused));
+  }
+}
+
+MapFile::MapFile(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+MapFile::MapFile(MapFile&&) noexcept = default;
+MapFile& MapFile::operator=(MapFile&&) noexcept = default;
+MapFile::~MapFile() = default;
+
+const fs::path& MapFile::path() const noexcept { return state_->path; }
+const MapForm& MapFile::form() const noexcept { return state_->form; }
+std::uint64_t MapFile::next_place() const { return static_cast<std::uint64_t>(state_->next_place); }
+
+}  // namespace seqloop::sqlite

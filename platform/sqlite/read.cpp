@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <limits>
+
+#include "sqlite/little_endian.hpp"
+#include "sqlite/state.hpp"
+
+namespace seqloop::sqlite {
+namespace {
+
+constexpr const char* session_columns =
+    "SELECT id, name, began_ns, settings, frames, places, checksum FROM session ";
+
+SessionFacts session_facts(const Statement& row) {
+  return {row.integer(0),
+          row.text(1),
+          row.integer(2),
+          row.text(3),
+          static_cast<std::uint64_t>(row.integer(4)),
+          static_cast<std::uint64_t>(row.integer(5))};
+}
+
+SavedThumbnail thumbnail_of(const Statement& row) {
+  const std::span<const std::byte> jpeg = row.blob(1);
+  return {static_cast<std::uint64_t>(row.integer(0)), {jpeg.begin(), jpeg.end()}};
+}
+
+/// @param row whole
+std::int64_t last_number(const BlockRow& row) {
+  return static_cast<std::int64_t>(load_u64(row.records.last(record_bytes)));
+}
+
+bool is_whole(const SavedThumbnail& picture, std::int64_t checksum) {
+  return row_checksum("thumbnail", static_cast<std::int64_t>(picture.place),
+                      std::span<const std::byte>(picture.jpeg)) == checksum;
+}
+
+/// What of a block is left, packed.
+class Kept {
+ public:
+  explicit Kept(std::size_t place_bytes) : place_bytes_(place_bytes) {}
+
+  /// @param removed sorted
+  PlaceBlock of(const BlockRow& row, const std::vector<std::int64_t>& removed) {
+    records_ = decode_records(row.records);
+    const auto gone = [&removed](const PlaceRecord& record) {
+      return std::ranges::binary_search(removed, static_cast<std::int64_t>(record.number));
+    };
+    if (removed.empty() || std::ranges::none_of(records_, gone)) {
+      return {row.session, records_, row.places};
+    }
+    places_.clear();
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      if (gone(records_[i])) continue;
+      records_[left++] = records_[i];
+      const std::span<const std::byte> place = row.places.subspan(i * place_bytes_, place_bytes_);
+      places_.insert(places_.end(), place.begin(), place.end());
+    }
+    records_.resize(left);
+    return {row.session, records_, places_};
+  }
+
+ private:
+  std::size_t place_bytes_;
+  std::vector<PlaceRecord> records_;
+  std::vector<std::byte> places_;
+};
+
+}  // namespace
+
+BlockRow block_row(const Statement& statement) {
+  return {statement.integer(0), statement.integer(1), statement.integer(2),
+          statement.integer(3), statement.blob(4),    statement.blob(5)};
+}
+
+SessionFacts MapFile::State::session(std::int64_t id) const {
+  Statement row(database, std::string(session_columns) + "WHERE id = ?");
+  if (!row.with(id).step()) throw SetupError(damaged("session " + std::to_string(id)));
+  SessionFacts facts = session_facts(row);
+  if (session_sum(facts) != row.integer(6)) throw SetupError(damaged(session_name(id)));
+  return facts;
+}
+
+std::vector<SessionFacts> MapFile::State::sessions() const {
+  std::vector<SessionFacts> all;
+  Statement row(database, std::string(session_columns) + "ORDER BY id");
+  while (row.step()) {
+    all.push_back(session_facts(row));
+    if (session_sum(all.back()) != row.integer(6)) {
+      throw SetupError(damaged(session_name(all.back().id)));
+    }
+  }
+  return all;
+}
+
+std::string MapFile::State::session_name(std::int64_t id) const {
+  try {
+    Statement row(database, "SELECT name FROM session WHERE id = ?");
+    if (row.with(id).step()) return "session '" + row.text(0) + "'";
+  } catch (const DatabaseError&) {  // then its number has to do
+  }
+  return "session " + std::to_string(id);
+}
+
+void MapFile::State::read(std::int64_t from, std::int64_t to,
+                          const std::function<void(const PlaceBlock&)>& take,
+                          const std::function<void(const std::string&)>& told) const {
+  const auto tell = [&](const std::string& what) {
+    if (!told) throw SetupError(damaged(what));
+    told(what);
+  };
+  std::string place = "the table of blocks";
+  try {
+    Kept kept(static_cast<std::size_t>(form.place_bytes));
+    std::vector<std::int64_t> removed;
+    Statement gone(database, "SELECT place, checksum FROM removed WHERE place BETWEEN ? AND ?");
+    Statement rows(database, std::string(block_columns) +
+                                 "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
+    rows.with(from, to);
+    while (rows.step()) {
+      const BlockRow row = block_row(rows);
+      place = "what follows the block from place " + std::to_string(row.first);
+      if (!row.whole(form)) {
+        tell("the block from place " + std::to_string(row.first) + " of " +
+             session_name(row.session));
+        continue;
+      }
+      removed.clear();
+      gone.with(row.first, last_number(row));
+      while (gone.step()) {
+        if (row_checksum("removed", gone.integer(0)) == gone.integer(1)) {
+          removed.push_back(gone.integer(0));
+        } else {
+          tell("the note that place " + std::to_string(gone.integer(0)) + " was removed");
+        }
+      }
+      const PlaceBlock block = kept.of(row, removed);
+      if (!block.records.empty()) take(block);
+    }
+  } catch (const DatabaseError& error) {
+    if (!told || error.primary() != SQLITE_CORRUPT) throw SetupError(fault_of(path, error));
+    tell(place);
+  }
+}
+
+std::vector<SessionFacts> MapFile::sessions() const {
+  return state_->reading([&] { return state_->sessions(); });
+}
+
+void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
+                   const std::function<void(const std::string&)>& damaged) const {
+  state_->read(0, std::numeric_limits<std::int64_t>::max(), take, damaged);
+}
+
+std::optional<SavedStatistics> MapFile::statistics(std::int64_t session) const {
+  return state_->reading([&]() -> std::optional<SavedStatistics> {
+    Statement row(state_->database,
+                  "SELECT frames, mean, variance, checksum FROM statistics WHERE session = ?");
+    if (!row.with(session).step()) return std::nullopt;
+    const std::int64_t sum =
+        row_checksum("statistics", session, row.integer(0), row.blob(1), row.blob(2));
+    if (sum != row.integer(3) || row.blob(1).size() != row.blob(2).size()) {
+      throw SetupError(state_->damaged("the statistics of " + state_->session_name(session)));
+    }
+    return SavedStatistics{static_cast<std::uint64_t>(row.integer(0)), decode_doubles(row.blob(1)),
+                           decode_doubles(row.blob(2))};
+  });
+}
+
+void MapFile::read_links(const std::function<void(const SavedLink&)>& take) const {
+  state_->reading([&] {
+    Statement row(state_->database,
+                  "SELECT id, session, frame, place, other, probability, checksum FROM link "
+                  "ORDER BY id");
+    while (row.step()) {
+      SavedLink link{row.integer(1), static_cast<std::uint64_t>(row.integer(2)), std::nullopt,
+                     static_cast<std::uint64_t>(row.integer(4)), row.real(5)};
+      if (!row.null(3)) link.place = static_cast<std::uint64_t>(row.integer(3));
+      if (link_sum(row.integer(0), link) != row.integer(6)) {
+        throw SetupError(state_->damaged("link " + std::to_string(row.integer(0))));
+      }
+      take(link);
+    }
+  });
+}
+
+void MapFile::read_thumbnails(const std::function<void(const SavedThumbnail&)>& take) const {
+  state_->reading([&] {
+    Statement row(state_->database, "SELECT place, jpeg, checksum FROM thumbnail ORDER BY place");
+    while (row.step()) {
+      const SavedThumbnail picture = thumbnail_of(row);
+      if (!is_whole(picture, row.integer(2))) {
+        throw SetupError(
+            state_->damaged("the thumbnail of place " + std::to_string(picture.place)));
+      }
+      take(picture);
+    }
+  });
+}
+
+std::optional<SavedThumbnail> MapFile::thumbnail(std::uint64_t place) const {
+  return state_->reading([&]() -> std::optional<SavedThumbnail> {
+    Statement row(state_->database, "SELECT place, jpeg, checksum FROM thumbnail WHERE place = ?");
+    if (!row.with(static_cast<std::int64_t>(place)).step()) return std::nullopt;
+    SavedThumbnail picture = thumbnail_of(row);
+    if (!is_whole(picture, row.integer(2))) {
+      throw SetupError(state_->damaged("the thumbnail of place " + std::to_string(place)));
+    }
+    return picture;
+  });
+}
+
+std::vector<std::string> MapFile::check() const {
+  std::vector<std::string> wrong;
+  const auto look = [&wrong](const auto& part) {
+    try {
+      part();
+    } catch (const SetupError& error) {
+      for (const Fault& fault : error.faults()) wrong.push_back(fault.why);
+    }
+  };
+  std::vector<SessionFacts> known;
+  look([&] { known = sessions(); });
+  std::vector<std::uint64_t> counted(known.size());
+  read(
+      [&](const PlaceBlock& block) {
+        const auto owner = std::ranges::find(known, block.session, &SessionFacts::id);
+        if (owner == known.end()) {
+          wrong.push_back("the block from place " + std::to_string(block.records.front().number) +
+                          " belongs to no session");
+          return;
+        }
+        counted[static_cast<std::size_t>(owner - known.begin())] += block.records.size();
+      },
+      [&wrong](const std::string& what) { wrong.push_back(what + " is damaged"); });
+  const bool blocks_whole = wrong.empty();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (blocks_whole && counted[i] != known[i].places) {
+      wrong.push_back("session '" + known[i].name + "' has " + std::to_string(counted[i]) +
+                      " places and not " + std::to_string(known[i].places));
+    }
+    look([&] { (void)statistics(known[i].id); });
+  }
+  look([&] { read_links([](const SavedLink&) {}); });
+  look([&] { read_thumbnails([](const SavedThumbnail&) {}); });
+  look([&] {
+    state_->reading([&] {
+      Statement row(state_->database, "PRAGMA integrity_check(20)");
+      while (row.step()) {
+        if (const std::string said = row.text(0); said != "ok") wrong.push_back("SQLite: " + said);
+      }
+    });
+  });
+  return wrong;
+}
+
+}  // namespace seqloop::sqlite

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "sqlite/state.hpp"
+
+namespace seqloop::sqlite {
+namespace {
+
+std::int64_t signed_of(std::uint64_t value) { return static_cast<std::int64_t>(value); }
+
+/// Throws std::invalid_argument: what of a batch does not fit.
+void check_batch(const MapBatch& batch, const MapForm& form, std::uint64_t next) {
+  if (batch.places.size() / form.place_bytes != batch.records.size() ||
+      batch.places.size() % form.place_bytes != 0) {
+    throw std::invalid_argument("MapFile::save: bytes of places do not fit the records");
+  }
+  for (const PlaceRecord& record : batch.records) {
+    if (record.number < next || record.number >= number_end) {
+      throw std::invalid_argument("MapFile::save: numbers of places do not ascend");
+    }
+    next = record.number + 1;
+  }
+}
+
+}  // namespace
+
+void MapFile::State::save_session(const SessionFacts& facts) {
+  Statement(database, "INSERT OR REPLACE INTO session VALUES(?, ?, ?, ?, ?, ?, ?)")
+      .with(facts.id, std::string_view(facts.name), facts.began_ns,
+            std::string_view(facts.settings), signed_of(facts.frames), signed_of(facts.places),
+            session_sum(facts))
+      .run();
+}
+
+void MapFile::State::insert_block(std::int64_t session, std::span<const PlaceRecord> records,
+                                  std::span<const std::byte> places) {
+  const std::vector<std::byte> coded = encode_records(records);
+  const BlockRow row{
+      signed_of(records.front().number), session, signed_of(records.size()), 0, coded, places};
+  Statement(database, "INSERT INTO block VALUES(?, ?, ?, ?, ?, ?)")
+      .with(row.first, row.session, row.count, row.sum(), row.records, row.places)
+      .run();
+}
+
+void MapFile::State::remove_place(std::int64_t number) {
+  Statement find(database, std::string(block_columns) +
+                               "FROM block WHERE first <= ? ORDER BY first DESC LIMIT 1");
+  if (!find.with(number).step()) return;
+  const BlockRow row = block_row(find);
+  if (row.records.size() % record_bytes != 0 || row.records.empty()) return;
+  const std::vector<PlaceRecord> records = decode_records(row.records);
+  const auto is_it = [number](const PlaceRecord& r) { return signed_of(r.number) == number; };
+  if (std::ranges::none_of(records, is_it)) return;
+  Statement(database, "INSERT OR IGNORE INTO removed VALUES(?, ?)")
+      .with(number, row_checksum("removed", number))
+      .run();
+  if (sqlite3_changes(database.handle()) == 0) return;
+  SessionFacts owner = session(row.session);
+  --owner.places;
+  save_session(owner);
+  Statement(database, "DELETE FROM thumbnail WHERE place = ?").with(number).run();
+
+  // Half empty blocks are written anew: the file stays within twice of what it holds, and each
+  // place is copied about once.
+  const std::int64_t last = signed_of(records.back().number);
+  Statement gone_rows(database, "SELECT place FROM removed WHERE place BETWEEN ? AND ?");
+  gone_rows.with(row.first, last);
+  std::vector<std::int64_t> gone;
+  while (gone_rows.step()) gone.push_back(gone_rows.integer(0));
+  if (gone.size() * 2 < records.size()) return;
+  if (!row.whole(form))
+    throw SetupError(damaged("the block from place " + std::to_string(row.first)));
+  std::vector<PlaceRecord> left;
+  std::vector<std::byte> bytes;
+  const auto size = static_cast<std::size_t>(form.place_bytes);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (std::ranges::binary_search(gone, signed_of(records[i].number))) continue;
+    left.push_back(records[i]);
+    const std::span<const std::byte> place = row.places.subspan(i * size, size);
+    bytes.insert(bytes.end(), place.begin(), place.end());
+  }
+  const std::int64_t first = row.first;
+  find.with(std::int64_t{-1});
+  Statement(database, "DELETE FROM block WHERE first = ?").with(first).run();
+  Statement(database, "DELETE FROM removed WHERE place BETWEEN ? AND ?").with(first, last).run();
+  if (!left.empty()) insert_block(owner.id, left, bytes);
+  return;
+}
+
+std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_ns,
+                                    const std::string& settings) {
+  const std::string file = state_->path.string();
+  if (name.empty()) throw SetupError({file, "a session without a name", "give it one"});
+  for (const SessionFacts& known : sessions()) {
+    if (known.name != name) continue;
+    throw SetupError({file, "there is a session '" + name + "' already", "give another name"});
+  }
+  const std::int64_t id = state_->next_session;
+  state_->saving([&] {
+    state_->save_session({id, name, began_ns, settings, 0, 0});
+    state_->next_session = id + 1;
+  });
+  return id;
+}
+
+void MapFile::save(std::int64_t session, const MapBatch& batch) {
+  State& map = *state_;
+  check_batch(batch, map.form, next_place());
+  if (session + 1 != map.next_session) {
+    throw std::invalid_argument("MapFile::save: only the newest session grows");
+  }
+  map.saving([&] {
+    SessionFacts facts = map.session(session);
+    const std::size_t at_once = block_places(map.form);
+    const auto size = static_cast<std::size_t>(map.form.place_bytes);
+    for (std::size_t i = 0; i < batch.records.size(); i += at_once) {
+      const std::size_t count = std::min(at_once, batch.records.size() - i);
+      map.insert_block(session, batch.records.subspan(i, count),
+                       batch.places.subspan(i * size, count * size));
+    }
+    if (!batch.records.empty()) map.next_place = signed_of(batch.records.back().number) + 1;
+    if (!batch.links.empty()) {
+      Statement insert(map.database, "INSERT INTO link VALUES(?, ?, ?, ?, ?, ?, ?)");
+      std::int64_t id = map.database.number("SELECT max(id) FROM link");
+      for (SavedLink link : batch.links) {
+        link.session = session;
+        std::optional<std::int64_t> place;
+        if (link.place) place = signed_of(*link.place);
+        ++id;
+        insert
+            .with(id, session, signed_of(link.frame), place, signed_of(link.other),
+                  link.probability, link_sum(id, link))
+            .run();
+      }
+    }
+    for (const SavedThumbnail& picture : batch.thumbnails) {
+      const std::span<const std::byte> jpeg = picture.jpeg;
+      const std::int64_t place = signed_of(picture.place);
+      Statement(map.database, "INSERT OR REPLACE INTO thumbnail VALUES(?, ?, ?)")
+          .with(place, jpeg, row_checksum("thumbnail", place, jpeg))
+          .run();
+    }
+    facts.frames = batch.frames;
+    facts.places += batch.records.size();
+    map.save_session(facts);
+    for (const std::uint64_t number : batch.removed) map.remove_place(signed_of(number));
+    if (batch.statistics != nullptr) {
+      const std::vector<std::byte> mean = encode_doubles(batch.statistics->mean);
+      const std::vector<std::byte> variance = encode_doubles(batch.statistics->variance);
+      const std::span<const std::byte> means = mean;
+      const std::span<const std::byte> variances = variance;
+      const std::int64_t frames = signed_of(batch.statistics->frames);
+      Statement(map.database, "INSERT OR REPLACE INTO statistics VALUES(?, ?, ?, ?, ?)")
+          .with(session, frames, means, variances,
+                row_checksum("statistics", session, frames, means, variances))
+          .run();
+    }
+  });
+}
+
+}  // namespace seqloop::sqlite

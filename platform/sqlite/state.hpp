@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "seqloop/sqlite/map_file.hpp"
+#include "sqlite/database.hpp"
+#include "sqlite/holder.hpp"
+#include "sqlite/schema.hpp"
+
+namespace seqloop::sqlite {
+
+/// What an open map is made of. The lock goes last.
+struct MapFile::State {
+  State(std::filesystem::path file, Holder lock, int flags, const char* vfs = nullptr)
+      : path(std::move(file)), holder(std::move(lock)), database(path, flags, vfs) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  State(State&&) = delete;
+  State& operator=(State&&) = delete;
+  ~State();
+
+  std::filesystem::path path;
+  Holder holder;
+  Database database;
+  bool writes = false;
+  MapForm form;
+  std::int64_t next_place = 0;
+  std::int64_t next_session = 1;
+
+  [[nodiscard]] Fault damaged(const std::string& what) const {
+    return {path.string(), what + " is damaged",
+            "`seqloop map recover` copies what is whole into a new file"};
+  }
+
+  /// Runs what sets up or reads. Throws SetupError.
+  template <class Part>
+  auto reading(Part part) const {
+    try {
+      return part();
+    } catch (const DatabaseError& error) {
+      throw SetupError(fault_of(path, error));
+    }
+  }
+
+  /// Runs what changes the map, all of it or nothing, and keeps what is known of it in step.
+  /// Throws SaveError; SetupError where the file is damaged.
+  template <class Part>
+  void saving(Part part) {
+    if (!writes) throw SaveError(path.string() + ": it was opened to read only");
+    const std::pair before(next_place, next_session);
+    try {
+      Transaction transaction(database);
+      part();
+      save_map_row();
+      transaction.commit();
+    } catch (const DatabaseError& error) {
+      std::tie(next_place, next_session) = before;
+      throw SaveError(to_string(fault_of(path, error)));
+    } catch (...) {
+      std::tie(next_place, next_session) = before;
+      throw;
+    }
+  }
+
+  void make(const MapForm& wanted);
+  void save_map_row();
+  void load_map_row();
+  void save_session(const SessionFacts& facts);
+  [[nodiscard]] SessionFacts session(std::int64_t id) const;
+  [[nodiscard]] std::vector<SessionFacts> sessions() const;
+  /// "session 'monday'", as far as that can be told.
+  [[nodiscard]] std::string session_name(std::int64_t id) const;
+  void insert_block(std::int64_t session, std::span<const PlaceRecord> records,
+                    std::span<const std::byte> places);
+  /// Removes one place, where there is such a one, in the open transaction.
+  void remove_place(std::int64_t number);
+  /// Blocks whose first number is in a range; what was removed of them is left out.
+  void read(std::int64_t from, std::int64_t to, const std::function<void(const PlaceBlock&)>& take,
+            const std::function<void(const std::string&)>& damaged) const;
+};
+
+/// Reads what the statement stands at: first, session, count, checksum, records, places.
+[[nodiscard]] BlockRow block_row(const Statement& statement);
+
+constexpr const char* block_columns = "SELECT first, session, count, checksum, records, places ";
+
+}  // namespace seqloop::sqlite
