@@ -73,6 +73,7 @@ std::uint64_t MapFile::add(const MapFile& from) {
     if (link.place) *link.place += added;
     links.push_back(link);
   });
+  state_->saving([&] {
   for (const SessionFacts& facts : from.sessions()) {
     const std::int64_t id =
         begin_session(free_name(sessions(), facts.name), facts.began_ns, facts.settings);
@@ -102,6 +103,7 @@ std::uint64_t MapFile::add(const MapFile& from) {
               .thumbnails = pictures,
               .statistics = statistics ? &*statistics : nullptr});
   }
+  });
   return added;
 }
 

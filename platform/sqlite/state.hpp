@@ -52,6 +52,7 @@ struct MapFile::State {
   template <class Part>
   void saving(Part part) {
     if (!writes) throw SaveError(path.string() + ": it was opened to read only");
+    if (sqlite3_get_autocommit(database.handle()) == 0) return part();  // within one of these
     const std::pair before(next_place, next_session);
     try {
       Transaction transaction(database);

@@ -163,7 +163,7 @@ class MapFile {
 
   /// Copies all sessions of another map behind this one's. A name that is taken gets a number.
   /// @return what is added to its places' numbers. Throws SetupError: another form, damaged;
-  ///   SaveError: sessions may be copied in part
+  ///   SaveError. All of it or nothing
   std::uint64_t add(const MapFile& from);
 
   /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "sqlite/sample_map.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "seqloop/fault.hpp"
+#include "sqlite/checksum.hpp"
+
+namespace seqloop::test {
+
+using namespace sqlite;
+
+MapForm sample_form() { return {"int8 euclidean", "built-in 1f00", 5, 200}; }
+
+std::vector<std::byte> sample_place(std::uint64_t number, std::size_t bytes) {
+  std::vector<std::byte> place(bytes);
+  std::uint64_t state = number * 0x9E3779B97F4A7C15U + 1;
+  for (std::byte& byte : place) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    byte = static_cast<std::byte>(state >> 56U);
+  }
+  return place;
+}
+
+void save_sample(MapFile& map, std::int64_t session, std::uint64_t frames, std::size_t places,
+                 std::vector<std::uint64_t> removed) {
+  std::vector<PlaceRecord> records;
+  std::vector<std::byte> bytes;
+  std::vector<SavedThumbnail> pictures;
+  std::vector<SavedLink> links;
+  const std::uint64_t next = map.next_place();
+  const auto size = static_cast<std::size_t>(map.form().place_bytes);
+  for (std::uint64_t number = next; number < next + places; ++number) {
+    records.push_back(
+        {number, frames + number - next, static_cast<std::int64_t>(number) * 40 - 100});
+    const std::vector<std::byte> place = sample_place(number, size);
+    bytes.insert(bytes.end(), place.begin(), place.end());
+  }
+  if (places > 0) {
+    pictures.push_back({next, sample_place(next, 700)});
+    links.push_back({session, frames, next, next / 2, .5 + static_cast<double>(next % 50) / 100});
+  }
+  links.push_back({session, frames + places, std::nullopt, next / 3, .999});
+  SavedStatistics statistics{frames + places, {}, {}};
+  for (std::uint64_t i = 0; i < map.form().descriptor_size; ++i) {
+    statistics.mean.push_back(static_cast<double>(frames + i) / 7.0);
+    statistics.variance.push_back(1.0 / static_cast<double>(frames + i + 1));
+  }
+  map.save(session, {.frames = frames + places + 1,
+                     .records = records,
+                     .places = bytes,
+                     .links = links,
+                     .thumbnails = pictures,
+                     .removed = removed,
+                     .statistics = &statistics});
+}
+
+std::string content_of(const MapFile& map, std::string& fault) {
+  std::string text;
+  const auto add = [&text](const auto&... values) {
+    ((text += std::to_string(values) + ' '), ...);
+    text += '\n';
+  };
+  try {
+    for (const std::string& wrong : map.check()) fault += wrong + "; ";
+    add(map.next_place());
+    for (const SessionFacts& facts : map.sessions()) {
+      text += facts.name + ' ' + facts.settings + ' ';
+      add(facts.id, facts.began_ns, facts.frames, facts.places);
+      if (const auto statistics = map.statistics(facts.id)) {
+        add(statistics->frames);
+        for (const double value : statistics->mean) add(value);
+        for (const double value : statistics->variance) add(value);
+      }
+    }
+    const auto size = static_cast<std::size_t>(map.form().place_bytes);
+    map.read([&](const PlaceBlock& block) {
+      for (std::size_t i = 0; i < block.records.size(); ++i) {
+        const PlaceRecord& record = block.records[i];
+        add(block.session, record.number, record.frame, record.time_ns,
+            crc32(block.places.subspan(i * size, size)));
+      }
+    });
+    map.read_links([&](const SavedLink& link) {
+      add(link.session, link.frame, link.place.value_or(0), link.other, link.probability);
+    });
+    map.read_thumbnails(
+        [&](const SavedThumbnail& picture) { add(picture.place, crc32(picture.jpeg)); });
+  } catch (const SetupError& error) {
+    fault += error.what();
+  }
+  return text;
+}
+
+}  // namespace seqloop::test

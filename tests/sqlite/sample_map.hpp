@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "seqloop/sqlite/map_file.hpp"
+
+namespace seqloop::test {
+
+/// The form of the maps below: places of 200 bytes.
+[[nodiscard]] sqlite::MapForm sample_form();
+
+/// The bytes of place `number`; the same each time.
+[[nodiscard]] std::vector<std::byte> sample_place(std::uint64_t number, std::size_t bytes = 200);
+
+/// Saves places, with links, a thumbnail and statistics that follow from the numbers.
+/// @param frames the session has so far @param removed places that go at the same time
+void save_sample(sqlite::MapFile& map, std::int64_t session, std::uint64_t frames,
+                 std::size_t places, std::vector<std::uint64_t> removed = {});
+
+/// All that a map holds, as text; two maps that say the same are the same. `check` must find
+/// nothing wrong. @param fault told what is wrong, else
+[[nodiscard]] std::string content_of(const sqlite::MapFile& map, std::string& fault);
+
+}  // namespace seqloop::test
