@@ -72,7 +72,9 @@ void check_file(const fs::path& path) {
 
 MapFile::State::~State() {
   if (!writes) return;
-  try {  // one file without a log beside it, where nobody reads it just now
+  try {
+    database.execute("DELETE FROM holder");
+    // One file without a log beside it, where nobody reads it just now.
     database.execute("PRAGMA journal_mode = DELETE");
   } catch (const DatabaseError&) {  // the log stays and is read with the file
   }
@@ -81,24 +83,23 @@ MapFile::State::~State() {
 void MapFile::State::load_map_row() {
   Statement row(database,
                 "SELECT form, describer, descriptor_size, place_bytes, next_place, next_session, "
-                "checksum FROM map");
+                "links, thumbnails, checksum FROM map");
   if (!row.step()) throw SetupError(damaged("what the map says of itself"));
   form = {row.text(0), row.text(1), static_cast<std::uint64_t>(row.integer(2)),
           static_cast<std::uint64_t>(row.integer(3))};
-  next_place = row.integer(4);
-  next_session = row.integer(5);
-  if (map_sum(form, next_place, next_session) != row.integer(6) || form.place_bytes < 1 ||
+  counts = {row.integer(4), row.integer(5), row.integer(6), row.integer(7)};
+  if (map_sum(form, counts) != row.integer(8) || form.place_bytes < 1 ||
       form.place_bytes > most_place_bytes) {
     throw SetupError(damaged("what the map says of itself"));
   }
 }
 
 void MapFile::State::save_map_row() {
-  Statement(database, "INSERT OR REPLACE INTO map VALUES(1, ?, ?, ?, ?, ?, ?, ?)")
+  Statement(database, "INSERT OR REPLACE INTO map VALUES(1, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .with(std::string_view(form.form), std::string_view(form.describer),
             static_cast<std::int64_t>(form.descriptor_size),
-            static_cast<std::int64_t>(form.place_bytes), next_place, next_session,
-            map_sum(form, next_place, next_session))
+            static_cast<std::int64_t>(form.place_bytes), counts.next_place, counts.next_session,
+            counts.links, counts.thumbnails, map_sum(form, counts))
       .run();
 }
 
@@ -123,10 +124,12 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
     auto state = std::make_unique<State>(path, std::move(holder),
                                          SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     Database& database = state->database;
-    // In the log, FULL would do; EXTRA is for the moments in which there is none.
-    database.execute("PRAGMA page_size = " + std::to_string(page_size) +
-                     "; PRAGMA synchronous = EXTRA; PRAGMA wal_autocheckpoint = " +
-                     std::to_string(checkpoint_pages));
+    // In the log, FULL would do; EXTRA is for the moments in which there is none. What is deleted
+    // is overwritten: it is forgotten, and `recover` does not bring it back.
+    database.execute(
+        "PRAGMA page_size = " + std::to_string(page_size) +
+        "; PRAGMA synchronous = EXTRA; PRAGMA secure_delete = ON; PRAGMA wal_autocheckpoint = " +
+        std::to_string(checkpoint_pages));
     if (database.number("PRAGMA page_count") == 0) {
       if (!form) {
         throw SetupError({path.string(), "is empty: nothing was saved in it", "name a map"});
@@ -191,6 +194,8 @@ MapFile::~MapFile() = default;
 
 const fs::path& MapFile::path() const noexcept { return state_->path; }
 const MapForm& MapFile::form() const noexcept { return state_->form; }
-std::uint64_t MapFile::next_place() const { return static_cast<std::uint64_t>(state_->next_place); }
+std::uint64_t MapFile::next_place() const {
+  return static_cast<std::uint64_t>(state_->counts.next_place);
+}
 
 }  // namespace seqloop::sqlite

@@ -9,7 +9,8 @@ namespace seqloop::sqlite {
 namespace {
 
 constexpr const char* session_columns =
-    "SELECT id, name, began_ns, settings, frames, places, checksum FROM session ";
+    "SELECT id, name, began_ns, settings, frames, places, statistics, form, describer, "
+    "descriptor_size, place_bytes, checksum FROM session ";
 
 SessionFacts session_facts(const Statement& row) {
   return {row.integer(0),
@@ -17,7 +18,8 @@ SessionFacts session_facts(const Statement& row) {
           row.integer(2),
           row.text(3),
           static_cast<std::uint64_t>(row.integer(4)),
-          static_cast<std::uint64_t>(row.integer(5))};
+          static_cast<std::uint64_t>(row.integer(5)),
+          row.integer(6) != 0};
 }
 
 SavedThumbnail thumbnail_of(const Statement& row) {
@@ -78,7 +80,7 @@ SessionFacts MapFile::State::session(std::int64_t id) const {
   Statement row(database, std::string(session_columns) + "WHERE id = ?");
   if (!row.with(id).step()) throw SetupError(damaged("session " + std::to_string(id)));
   SessionFacts facts = session_facts(row);
-  if (session_sum(facts) != row.integer(6)) throw SetupError(damaged(session_name(id)));
+  if (session_sum(facts, form) != row.integer(11)) throw SetupError(damaged(session_name(id)));
   return facts;
 }
 
@@ -87,7 +89,7 @@ std::vector<SessionFacts> MapFile::State::sessions() const {
   Statement row(database, std::string(session_columns) + "ORDER BY id");
   while (row.step()) {
     all.push_back(session_facts(row));
-    if (session_sum(all.back()) != row.integer(6)) {
+    if (session_sum(all.back(), form) != row.integer(11)) {
       throw SetupError(damaged(session_name(all.back().id)));
     }
   }
@@ -150,14 +152,25 @@ std::vector<SessionFacts> MapFile::sessions() const {
 
 void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
                    const std::function<void(const std::string&)>& damaged) const {
-  state_->read(0, std::numeric_limits<std::int64_t>::max(), take, damaged);
+  std::uint64_t missing = 0;
+  for (const SessionFacts& facts : sessions()) missing += facts.places;
+  const auto counted = [&](const PlaceBlock& block) {
+    missing -= block.records.size();
+    take(block);
+  };
+  state_->read(0, std::numeric_limits<std::int64_t>::max(), counted, damaged);
+  if (missing != 0 && !damaged)
+    throw SetupError(state_->damaged("the table of blocks or of removed places"));
 }
 
 std::optional<SavedStatistics> MapFile::statistics(std::int64_t session) const {
   return state_->reading([&]() -> std::optional<SavedStatistics> {
     Statement row(state_->database,
                   "SELECT frames, mean, variance, checksum FROM statistics WHERE session = ?");
-    if (!row.with(session).step()) return std::nullopt;
+    if (!row.with(session).step()) {
+      if (!state_->session(session).statistics) return std::nullopt;
+      throw SetupError(state_->damaged("the statistics of " + state_->session_name(session)));
+    }
     const std::int64_t sum =
         row_checksum("statistics", session, row.integer(0), row.blob(1), row.blob(2));
     if (sum != row.integer(3) || row.blob(1).size() != row.blob(2).size()) {
@@ -169,6 +182,7 @@ std::optional<SavedStatistics> MapFile::statistics(std::int64_t session) const {
 }
 
 void MapFile::read_links(const std::function<void(const SavedLink&)>& take) const {
+  std::int64_t count = 0;
   state_->reading([&] {
     Statement row(state_->database,
                   "SELECT id, session, frame, place, other, probability, checksum FROM link "
@@ -181,11 +195,14 @@ void MapFile::read_links(const std::function<void(const SavedLink&)>& take) cons
         throw SetupError(state_->damaged("link " + std::to_string(row.integer(0))));
       }
       take(link);
+      ++count;
     }
+    if (count != state_->counts.links) throw SetupError(state_->damaged("the table of links"));
   });
 }
 
 void MapFile::read_thumbnails(const std::function<void(const SavedThumbnail&)>& take) const {
+  std::int64_t count = 0;
   state_->reading([&] {
     Statement row(state_->database, "SELECT place, jpeg, checksum FROM thumbnail ORDER BY place");
     while (row.step()) {
@@ -195,6 +212,10 @@ void MapFile::read_thumbnails(const std::function<void(const SavedThumbnail&)>& 
             state_->damaged("the thumbnail of place " + std::to_string(picture.place)));
       }
       take(picture);
+      ++count;
+    }
+    if (count != state_->counts.thumbnails) {
+      throw SetupError(state_->damaged("the table of thumbnails"));
     }
   });
 }

@@ -46,17 +46,19 @@ void MapFile::forget(const std::string& session) {
                       names.empty() ? "it has none" : "it has: " + names});
   }
   map.saving([&] {
-    const Numbers numbers = numbers_of(map.database, found->id, map.next_place);
-    for (const char* sql : {"DELETE FROM removed WHERE place BETWEEN ? AND ?",
-                            "DELETE FROM thumbnail WHERE place BETWEEN ? AND ?",
-                            "DELETE FROM link WHERE other BETWEEN ? AND ?"}) {
-      Statement(map.database, sql).with(numbers.first, numbers.last).run();
-    }
-    for (const char* sql :
-         {"DELETE FROM block WHERE session = ?", "DELETE FROM link WHERE session = ?",
-          "DELETE FROM statistics WHERE session = ?", "DELETE FROM session WHERE id = ?"}) {
-      Statement(map.database, sql).with(found->id).run();
-    }
+    const Numbers numbers = numbers_of(map.database, found->id, map.counts.next_place);
+    const auto drop = [&map](const std::string& from, const auto&... values) -> std::int64_t {
+      Statement(map.database, "DELETE FROM " + from).with(values...).run();
+      return sqlite3_changes(map.database.handle());
+    };
+    (void)drop("removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+    map.counts.thumbnails -=
+        drop("thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+    map.counts.links -= drop("link WHERE session = ? OR other BETWEEN ? AND ?", found->id,
+                             numbers.first, numbers.last);
+    (void)drop("block WHERE session = ?", found->id);
+    (void)drop("statistics WHERE session = ?", found->id);
+    (void)drop("session WHERE id = ?", found->id);
   });
 }
 
@@ -74,35 +76,36 @@ std::uint64_t MapFile::add(const MapFile& from) {
     links.push_back(link);
   });
   state_->saving([&] {
-  for (const SessionFacts& facts : from.sessions()) {
-    const std::int64_t id =
-        begin_session(free_name(sessions(), facts.name), facts.began_ns, facts.settings);
-    const Numbers numbers = from.state_->reading(
-        [&] { return numbers_of(from.state_->database, facts.id, signed_of(from.next_place())); });
-    std::vector<PlaceRecord> records;
-    from.state_->read(numbers.first, numbers.last,
-                      [&](const PlaceBlock& block) {
-                        records.assign(block.records.begin(), block.records.end());
-                        for (PlaceRecord& record : records) record.number += added;
-                        save(id, {.records = records, .places = block.places});
-                      },
-                      {});
-    std::vector<SavedThumbnail> pictures;
-    from.read_thumbnails([&](const SavedThumbnail& picture) {
-      const std::int64_t place = signed_of(picture.place);
-      if (place < numbers.first || place > numbers.last) return;
-      pictures.push_back(picture);
-      pictures.back().place += added;
-    });
-    std::vector<SavedLink> own;
-    std::ranges::copy_if(links, std::back_inserter(own),
-                         [&](const SavedLink& link) { return link.session == facts.id; });
-    const std::optional<SavedStatistics> statistics = from.statistics(facts.id);
-    save(id, {.frames = facts.frames,
-              .links = own,
-              .thumbnails = pictures,
-              .statistics = statistics ? &*statistics : nullptr});
-  }
+    for (const SessionFacts& facts : from.sessions()) {
+      const std::int64_t id =
+          begin_session(free_name(sessions(), facts.name), facts.began_ns, facts.settings);
+      const Numbers numbers = from.state_->reading([&] {
+        return numbers_of(from.state_->database, facts.id, signed_of(from.next_place()));
+      });
+      std::vector<PlaceRecord> records;
+      from.state_->read(numbers.first, numbers.last,
+                        [&](const PlaceBlock& block) {
+                          records.assign(block.records.begin(), block.records.end());
+                          for (PlaceRecord& record : records) record.number += added;
+                          save(id, {.records = records, .places = block.places});
+                        },
+                        {});
+      std::vector<SavedThumbnail> pictures;
+      from.read_thumbnails([&](const SavedThumbnail& picture) {
+        const std::int64_t place = signed_of(picture.place);
+        if (place < numbers.first || place > numbers.last) return;
+        pictures.push_back(picture);
+        pictures.back().place += added;
+      });
+      std::vector<SavedLink> own;
+      std::ranges::copy_if(links, std::back_inserter(own),
+                           [&](const SavedLink& link) { return link.session == facts.id; });
+      const std::optional<SavedStatistics> statistics = from.statistics(facts.id);
+      save(id, {.frames = facts.frames,
+                .links = own,
+                .thumbnails = pictures,
+                .statistics = statistics ? &*statistics : nullptr});
+    }
   });
   return added;
 }
@@ -151,6 +154,7 @@ void MapFile::compact() {
     }
     Statement drop(map.database, "DELETE FROM link WHERE id = ?");
     for (const std::int64_t id : loose) drop.with(id).run();
+    map.counts.links -= static_cast<std::int64_t>(loose.size());
   });
   try {
     map.database.execute("VACUUM");

@@ -25,10 +25,12 @@ void check_batch(const MapBatch& batch, const MapForm& form, std::uint64_t next)
 }  // namespace
 
 void MapFile::State::save_session(const SessionFacts& facts) {
-  Statement(database, "INSERT OR REPLACE INTO session VALUES(?, ?, ?, ?, ?, ?, ?)")
+  Statement(database, "INSERT OR REPLACE INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .with(facts.id, std::string_view(facts.name), facts.began_ns,
             std::string_view(facts.settings), signed_of(facts.frames), signed_of(facts.places),
-            session_sum(facts))
+            std::int64_t{facts.statistics ? 1 : 0}, std::string_view(form.form),
+            std::string_view(form.describer), signed_of(form.descriptor_size),
+            signed_of(form.place_bytes), session_sum(facts, form))
       .run();
 }
 
@@ -59,6 +61,7 @@ void MapFile::State::remove_place(std::int64_t number) {
   --owner.places;
   save_session(owner);
   Statement(database, "DELETE FROM thumbnail WHERE place = ?").with(number).run();
+  counts.thumbnails -= sqlite3_changes(database.handle());
 
   // Half empty blocks are written anew: the file stays within twice of what it holds, and each
   // place is copied about once.
@@ -95,10 +98,10 @@ std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_
     if (known.name != name) continue;
     throw SetupError({file, "there is a session '" + name + "' already", "give another name"});
   }
-  const std::int64_t id = state_->next_session;
+  const std::int64_t id = state_->counts.next_session;
   state_->saving([&] {
-    state_->save_session({id, name, began_ns, settings, 0, 0});
-    state_->next_session = id + 1;
+    state_->save_session({id, name, began_ns, settings, 0, 0, false});
+    state_->counts.next_session = id + 1;
   });
   return id;
 }
@@ -106,7 +109,7 @@ std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_
 void MapFile::save(std::int64_t session, const MapBatch& batch) {
   State& map = *state_;
   check_batch(batch, map.form, next_place());
-  if (session + 1 != map.next_session) {
+  if (session + 1 != map.counts.next_session) {
     throw std::invalid_argument("MapFile::save: only the newest session grows");
   }
   map.saving([&] {
@@ -118,9 +121,10 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
       map.insert_block(session, batch.records.subspan(i, count),
                        batch.places.subspan(i * size, count * size));
     }
-    if (!batch.records.empty()) map.next_place = signed_of(batch.records.back().number) + 1;
+    if (!batch.records.empty()) map.counts.next_place = signed_of(batch.records.back().number) + 1;
     if (!batch.links.empty()) {
       Statement insert(map.database, "INSERT INTO link VALUES(?, ?, ?, ?, ?, ?, ?)");
+      map.counts.links += signed_of(batch.links.size());
       std::int64_t id = map.database.number("SELECT max(id) FROM link");
       for (SavedLink link : batch.links) {
         link.session = session;
@@ -136,12 +140,14 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
     for (const SavedThumbnail& picture : batch.thumbnails) {
       const std::span<const std::byte> jpeg = picture.jpeg;
       const std::int64_t place = signed_of(picture.place);
-      Statement(map.database, "INSERT OR REPLACE INTO thumbnail VALUES(?, ?, ?)")
+      Statement(map.database, "INSERT OR IGNORE INTO thumbnail VALUES(?, ?, ?)")
           .with(place, jpeg, row_checksum("thumbnail", place, jpeg))
           .run();
+      map.counts.thumbnails += sqlite3_changes(map.database.handle());
     }
     facts.frames = batch.frames;
     facts.places += batch.records.size();
+    facts.statistics = facts.statistics || batch.statistics != nullptr;
     map.save_session(facts);
     for (const std::uint64_t number : batch.removed) map.remove_place(signed_of(number));
     if (batch.statistics != nullptr) {

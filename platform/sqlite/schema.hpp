@@ -22,11 +22,14 @@ constexpr const char* schema_sql = R"(
 CREATE TABLE map(
   id INTEGER PRIMARY KEY, form TEXT NOT NULL, describer TEXT NOT NULL,
   descriptor_size INTEGER NOT NULL, place_bytes INTEGER NOT NULL,
-  next_place INTEGER NOT NULL, next_session INTEGER NOT NULL, checksum INTEGER NOT NULL);
+  next_place INTEGER NOT NULL, next_session INTEGER NOT NULL,
+  links INTEGER NOT NULL, thumbnails INTEGER NOT NULL, checksum INTEGER NOT NULL);
 CREATE TABLE holder(id INTEGER PRIMARY KEY, pid INTEGER NOT NULL, host TEXT NOT NULL);
 CREATE TABLE session(
   id INTEGER PRIMARY KEY, name TEXT NOT NULL, began_ns INTEGER NOT NULL, settings TEXT NOT NULL,
-  frames INTEGER NOT NULL, places INTEGER NOT NULL, checksum INTEGER NOT NULL);
+  frames INTEGER NOT NULL, places INTEGER NOT NULL, statistics INTEGER NOT NULL,
+  form TEXT NOT NULL, describer TEXT NOT NULL, descriptor_size INTEGER NOT NULL,
+  place_bytes INTEGER NOT NULL, checksum INTEGER NOT NULL);
 CREATE TABLE statistics(
   session INTEGER PRIMARY KEY, frames INTEGER NOT NULL, mean BLOB NOT NULL,
   variance BLOB NOT NULL, checksum INTEGER NOT NULL);
@@ -80,17 +83,30 @@ struct BlockRow {
                       static_cast<std::int64_t>(link.other), link.probability);
 }
 
-[[nodiscard]] inline std::int64_t session_sum(const SessionFacts& facts) noexcept {
-  return row_checksum("session", facts.id, std::string_view(facts.name), facts.began_ns,
-                      std::string_view(facts.settings), static_cast<std::int64_t>(facts.frames),
-                      static_cast<std::int64_t>(facts.places));
+/// The form stands in each session as well as in the map: whichever is lost, it is not.
+[[nodiscard]] inline std::int64_t session_sum(const SessionFacts& facts,
+                                              const MapForm& form) noexcept {
+  return row_checksum(
+      "session", facts.id, std::string_view(facts.name), facts.began_ns,
+      std::string_view(facts.settings), static_cast<std::int64_t>(facts.frames),
+      static_cast<std::int64_t>(facts.places), std::int64_t{facts.statistics ? 1 : 0},
+      std::string_view(form.form), std::string_view(form.describer),
+      static_cast<std::int64_t>(form.descriptor_size), static_cast<std::int64_t>(form.place_bytes));
 }
 
-[[nodiscard]] inline std::int64_t map_sum(const MapForm& form, std::int64_t next_place,
-                                          std::int64_t next_session) noexcept {
+/// What the map counts, so that it is seen when rows are missing.
+struct Counts {
+  std::int64_t next_place = 0;
+  std::int64_t next_session = 1;
+  std::int64_t links = 0;
+  std::int64_t thumbnails = 0;
+};
+
+[[nodiscard]] inline std::int64_t map_sum(const MapForm& form, const Counts& counts) noexcept {
   return row_checksum("map", std::string_view(form.form), std::string_view(form.describer),
                       static_cast<std::int64_t>(form.descriptor_size),
-                      static_cast<std::int64_t>(form.place_bytes), next_place, next_session);
+                      static_cast<std::int64_t>(form.place_bytes), counts.next_place,
+                      counts.next_session, counts.links, counts.thumbnails);
 }
 
 }  // namespace seqloop::sqlite

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,8 +28,7 @@ struct MapFile::State {
   Database database;
   bool writes = false;
   MapForm form;
-  std::int64_t next_place = 0;
-  std::int64_t next_session = 1;
+  Counts counts;
 
   [[nodiscard]] Fault damaged(const std::string& what) const {
     return {path.string(), what + " is damaged",
@@ -53,17 +51,17 @@ struct MapFile::State {
   void saving(Part part) {
     if (!writes) throw SaveError(path.string() + ": it was opened to read only");
     if (sqlite3_get_autocommit(database.handle()) == 0) return part();  // within one of these
-    const std::pair before(next_place, next_session);
+    const Counts before = counts;
     try {
       Transaction transaction(database);
       part();
       save_map_row();
       transaction.commit();
     } catch (const DatabaseError& error) {
-      std::tie(next_place, next_session) = before;
+      counts = before;
       throw SaveError(to_string(fault_of(path, error)));
     } catch (...) {
-      std::tie(next_place, next_session) = before;
+      counts = before;
       throw;
     }
   }

@@ -32,6 +32,7 @@ struct SessionFacts {
   std::string settings;       ///< text of the caller
   std::uint64_t frames = 0;   ///< how many frames, from its first on, are saved for good
   std::uint64_t places = 0;   ///< as far as they were not removed
+  bool statistics = false;    ///< whether any were saved
 };
 
 /// By what the places of a session were standardised.
@@ -76,9 +77,9 @@ struct MapBatch {
   std::span<const PlaceRecord> records{};  ///< new places; numbers ascend, from `next_place` on
   std::span<const std::byte> places{};     ///< [records * place_bytes]
   std::span<const SavedLink> links{};      ///< `session` is not looked at
-  std::span<const SavedThumbnail> thumbnails{};
-  std::span<const std::uint64_t> removed{};     ///< places that go; unknown ones are left out
-  const SavedStatistics* statistics = nullptr;  ///< nothing: as they were
+  std::span<const SavedThumbnail> thumbnails{};  ///< the first one of a place stays
+  std::span<const std::uint64_t> removed{};      ///< places that go; unknown ones are left out
+  const SavedStatistics* statistics = nullptr;   ///< nothing: as they were
 };
 
 /// Places that follow each other in a session, as `read` hands them over.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace seqloop::sqlite {
+
+/// What came into the new file, and what did not.
+struct Recovered {
+  std::uint64_t sessions = 0;
+  std::uint64_t places = 0;
+  std::uint64_t links = 0;
+  std::uint64_t thumbnails = 0;
+  std::vector<std::string> lost;  ///< a line for each thing that is known to be missing
+};
+
+/// Copies every row that is whole into a new map. Rows are looked for in all pages, whatever became
+/// of the trees that led to them, and checksums tell which are whole. Places keep their numbers;
+/// sessions are numbered anew. The damaged file is only read.
+/// @param in a map, with its log beside it where there is one
+/// @param out a new file, written bit by bit: it is whole when this returns
+/// Throws SetupError: not readable, nothing whole in it; SaveError. Work: the file, twice.
+[[nodiscard]] Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out);
+
+}  // namespace seqloop::sqlite

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Maps with flipped bits, cut off, with pages that are swapped, empty or of other databases: they
+// are refused, or what is wrong is named; and what is whole is recovered.
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "expect_setup_error.hpp"
+#include "seqloop/sqlite/recover.hpp"
+#include "sqlite/recording_vfs.hpp"
+#include "sqlite/sample_map.hpp"
+#include "temporary_folder.hpp"
+
+namespace seqloop {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::MapFile;
+
+constexpr std::size_t page = 8192;
+constexpr std::size_t place_bytes = 200;
+
+fs::path in_memory() {
+  return fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+}
+
+/// A map, and on which pages each of its blocks is.
+class Sample {
+ public:
+  Sample() {
+    const fs::path path = folder_.path() / "sample.seqloop";
+    {
+      MapFile map = MapFile::open(path, test::sample_form());
+      for (const char* session : {"monday", "tuesday", "wednesday"}) {
+        const std::int64_t id = map.begin_session(session, 7, "k = 10");
+        for (const std::size_t places : {5U, 20U, 35U, 90U, 1U, 200U}) {
+          test::save_sample(map, id, 0, places);
+          blocks_.emplace_back();
+          for (std::size_t i = 0; i < places; ++i) {
+            blocks_.back().places.push_back(map.next_place() - places + i);
+          }
+        }
+      }
+      content_ = test::content_of(map, fault_);
+    }
+    bytes_ = test::read_all(path);
+    for (Block& block : blocks_) find(block);
+  }
+
+  struct Block {
+    std::vector<std::uint64_t> places;
+    std::set<std::size_t> pages;
+  };
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] const std::string& content() const { return content_; }
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  /// Looks for the first bytes of each record and the bytes of each place. Those that are split
+  /// between two pages lie beside others that are not.
+  void find(Block& block) const {
+    const auto look_for = [&](std::string_view part) {
+      const auto at = bytes_.find(part);
+      if (at == std::string::npos) return;
+      block.pages.insert(at / page);
+      block.pages.insert((at + part.size() - 1) / page);
+    };
+    for (const std::uint64_t number : block.places) {
+      const std::vector<std::byte> place = test::sample_place(number);
+      look_for({reinterpret_cast<const char*>(place.data()), place.size()});
+      const auto time = static_cast<std::int64_t>(number) * 40 - 100;
+      std::string record(16, '\0');
+      const std::uint64_t frame = number - block.places.front();
+      std::memcpy(record.data(), &frame, 8);
+      std::memcpy(record.data() + 8, &time, 8);
+      look_for(record);
+    }
+  }
+
+  test::TemporaryFolder folder_{in_memory()};
+  std::vector<Block> blocks_;
+  std::string bytes_;
+  std::string content_;
+  std::string fault_;
+};
+
+struct Damage {
+  std::string what;
+  std::string bytes;
+  std::set<std::size_t> pages;  ///< that are not as they were
+};
+
+Damage damage(const std::string& whole, const std::string& foreign, std::mt19937_64& random) {
+  Damage made{"", whole, {}};
+  const std::size_t pages = whole.size() / page;
+  const auto any = [&random](std::size_t end) { return static_cast<std::size_t>(random() % end); };
+  const auto touch = [&made, whole](std::size_t first, std::size_t last) {
+    for (std::size_t i = first / page; i <= last / page; ++i) made.pages.insert(i);
+  };
+  switch (any(7)) {
+    case 0: {
+      const std::size_t bits = std::size_t{1} << any(8);
+      made.what = std::to_string(bits) + " bits";
+      for (std::size_t i = 0; i < bits; ++i) {
+        const std::size_t at = any(whole.size());
+        made.bytes[at] = static_cast<char>(made.bytes[at] ^ (1 << any(8)));
+        touch(at, at);
+      }
+      break;
+    }
+    case 1: {
+      made.what = "headers of pages";
+      for (std::size_t i = 0; i < 1 + any(3); ++i) {
+        const std::size_t at = any(pages) * page + any(110);
+        made.bytes[at] = static_cast<char>(any(256));
+        touch(at, at);
+      }
+      break;
+    }
+    case 2: {
+      const std::size_t left = any(whole.size());
+      made.what = "cut off at " + std::to_string(left);
+      made.bytes.resize(left);
+      touch(left, whole.size() - 1);
+      break;
+    }
+    case 3: {
+      const std::size_t a = any(pages);
+      const std::size_t b = any(pages);
+      made.what = "swapped pages";
+      std::swap_ranges(made.bytes.begin() + static_cast<std::ptrdiff_t>(a * page),
+                       made.bytes.begin() + static_cast<std::ptrdiff_t>((a + 1) * page),
+                       made.bytes.begin() + static_cast<std::ptrdiff_t>(b * page));
+      touch(a * page, a * page);
+      touch(b * page, b * page);
+      break;
+    }
+    case 4: {
+      const std::size_t at = any(whole.size());
+      const std::size_t size = 1 + any(std::min(whole.size() - at, 3 * page));
+      made.what = "zeros";
+      std::fill_n(made.bytes.begin() + static_cast<std::ptrdiff_t>(at), size, '\0');
+      touch(at, at + size - 1);
+      break;
+    }
+    case 5: {
+      const std::size_t at = any(pages) * page;
+      made.what = "a page of another database";
+      std::copy_n(foreign.begin() + static_cast<std::ptrdiff_t>(any(foreign.size() / page) * page),
+                  page, made.bytes.begin() + static_cast<std::ptrdiff_t>(at));
+      touch(at, at);
+      break;
+    }
+    default: {
+      const std::size_t at = any(2) == 0 ? 60 + any(12) : any(100);
+      made.what = "another kind or version";
+      made.bytes[at] = static_cast<char>(any(256));
+      touch(at, at);
+    }
+  }
+  return made;
+}
+
+/// What opening, checking and reading says; empty when nothing is found to be wrong.
+std::string faults_of(const fs::path& file, bool write, std::string& content) {
+  std::string fault;
+  try {
+    const MapFile map = write ? MapFile::open(file, std::nullopt) : MapFile::read_only(file);
+    content = test::content_of(map, fault);
+  } catch (const SetupError& error) {
+    fault = error.what();
+    EXPECT_TRUE(test::says(fault, "damaged.seqloop"));
+    EXPECT_TRUE(test::says(fault, "; ")) << "nothing to do about it";
+  } catch (const sqlite::SaveError& error) {
+    fault = error.what();
+  }
+  return fault;
+}
+
+/// The numbers of what was recovered; each place must be what was saved.
+std::set<std::uint64_t> recovered(const fs::path& file, const fs::path& out) {
+  std::set<std::uint64_t> numbers;
+  try {
+    (void)sqlite::recover(file, out);
+  } catch (const SetupError& error) {
+    EXPECT_TRUE(test::says(error.what(), "; "));
+    return numbers;
+  }
+  const MapFile map = MapFile::read_only(out);
+  for (const std::string& wrong : map.check()) ADD_FAILURE() << wrong;
+  map.read([&](const sqlite::PlaceBlock& block) {
+    for (std::size_t i = 0; i < block.records.size(); ++i) {
+      const std::uint64_t number = block.records[i].number;
+      numbers.insert(number);
+      EXPECT_TRUE(std::ranges::equal(block.places.subspan(i * place_bytes, place_bytes),
+                                     test::sample_place(number)));
+    }
+  });
+  return numbers;
+}
+
+TEST(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
+  const test::RecordingVfs fast("nothing");
+  const Sample sample;
+  ASSERT_EQ(sample.fault(), "");
+  std::string foreign;
+  {
+    const test::TemporaryFolder folder(in_memory());
+    const fs::path path = folder.path() / "foreign.db";
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+    sqlite3_exec(database,
+                 "PRAGMA page_size = 8192; CREATE TABLE block(a, b); CREATE TABLE map(a TEXT);"
+                 "INSERT INTO block VALUES(1, zeroblob(30000)), ('x', 2.5); CREATE INDEX i ON "
+                 "block(a);",
+                 nullptr, nullptr, nullptr);
+    sqlite3_close(database);
+    foreign = test::read_all(path);
+  }
+  std::mt19937_64 random(14);
+  std::size_t named = 0;
+  for (std::size_t i = 0; i < SEQLOOP_DAMAGED_FILES && !testing::Test::HasFailure(); ++i) {
+    const test::TemporaryFolder folder(in_memory());
+    const Damage made = damage(sample.bytes(), foreign, random);
+    SCOPED_TRACE("file " + std::to_string(i) + ": " + made.what);
+    const fs::path file = folder.write("damaged.seqloop", made.bytes);
+    const std::set<std::uint64_t> numbers = recovered(file, folder.path() / "out.seqloop");
+    for (const Sample::Block& block : sample.blocks()) {
+      const auto touched = [&made](std::size_t p) { return made.pages.contains(p); };
+      if (std::ranges::any_of(block.pages, touched)) continue;
+      for (const std::uint64_t place : block.places) {
+        EXPECT_TRUE(numbers.contains(place)) << "place " << place << " is whole";
+      }
+    }
+    std::string content;
+    const std::string fault = faults_of(file, i % 4 == 0, content);
+    if (fault.empty()) {
+      EXPECT_TRUE(content == sample.content()) << "it is damaged and nothing was said:\n"
+                                               << content.substr(0, 300);
+    } else {
+      ++named;
+    }
+  }
+  std::printf("%d files, of %zu something was said\n", SEQLOOP_DAMAGED_FILES, named);
+  EXPECT_GT(named, static_cast<std::size_t>(SEQLOOP_DAMAGED_FILES) / 2);
+}
+
+TEST(MapDamage, ForeignFilesAreNoMaps) {
+  const test::TemporaryFolder folder(in_memory());
+  const std::string refused = test::setup_error([&] {
+    (void)sqlite::recover(folder.write("text", std::string(50'000, 'x')), folder.path() / "out");
+  });
+  EXPECT_TRUE(test::says(refused, "nothing of a map is whole in it"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+TEST(MapDamage, TheLogIsRecoveredWithTheFile) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path file = folder.path() / "map.seqloop";
+  const fs::path killed = folder.path() / "killed.seqloop";
+  {
+    MapFile map = MapFile::open(file, test::sample_form());
+    test::save_sample(map, map.begin_session("a", 0, ""), 0, 60);
+    for (const char* tail : {"", "-wal"}) fs::copy(file.string() + tail, killed.string() + tail);
+  }
+  EXPECT_EQ(sqlite::recover(killed, folder.path() / "out").places, 60U);
+  EXPECT_TRUE(fs::exists(killed.string() + "-wal"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out.copy"));
+}
+
+}  // namespace
+}  // namespace seqloop

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/sqlite/map_file.hpp"
+
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <random>
+#include <set>
+
+#include "expect_setup_error.hpp"
+#include "sqlite/checksum.hpp"
+#include "sqlite/recording_vfs.hpp"
+#include "sqlite/sample_map.hpp"
+#include "temporary_folder.hpp"
+
+namespace seqloop {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::MapFile;
+using test::says;
+using test::setup_error;
+using What = test::FileEvent::What;
+
+class Map : public testing::Test {
+ protected:
+  [[nodiscard]] fs::path file(const std::string& name = "map.seqloop") const {
+    return folder_.path() / name;
+  }
+  [[nodiscard]] MapFile open() const { return MapFile::open(file(), test::sample_form()); }
+
+  /// Two sessions with 40 places each, in four batches.
+  void make(const std::string& name = "map.seqloop") const {
+    MapFile map = MapFile::open(file(name), test::sample_form());
+    for (const char* session : {"monday", "tuesday"}) {
+      const std::int64_t id = map.begin_session(session, 1'700'000'000'000'000'000, "k = 10\n");
+      for (std::uint64_t i = 0; i < 4; ++i) test::save_sample(map, id, i * 11, 10);
+    }
+  }
+
+  /// What a map holds; a failed test where something is wrong with it.
+  static std::string content(const MapFile& map) {
+    std::string fault;
+    std::string text = test::content_of(map, fault);
+    EXPECT_EQ(fault, "");
+    return text;
+  }
+  [[nodiscard]] std::string content() const { return content(MapFile::read_only(file())); }
+
+  static std::set<std::uint64_t> numbers(const MapFile& map) {
+    std::set<std::uint64_t> found;
+    map.read([&found](const sqlite::PlaceBlock& block) {
+      for (std::size_t i = 0; i < block.records.size(); ++i) {
+        found.insert(block.records[i].number);
+        EXPECT_TRUE(std::ranges::equal(block.places.subspan(i * 200, 200),
+                                       test::sample_place(block.records[i].number)));
+      }
+    });
+    return found;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST(RowChecksum, IsZlibs) {
+  const std::string digits = "123456789";
+  EXPECT_EQ(sqlite::crc32(std::as_bytes(std::span(digits))), 0xCBF43926U);
+  for (const std::size_t size : {0U, 1U, 15U, 16U, 17U, 63U, 200U}) {
+    const std::vector<std::byte> bytes = test::sample_place(7, size);
+    std::uint32_t naive = 0xFFFFFFFFU;
+    for (const std::byte byte : bytes) {
+      naive ^= std::to_integer<std::uint32_t>(byte);
+      for (int bit = 0; bit < 8; ++bit) {
+        naive = (naive >> 1U) ^ ((naive & 1U) != 0 ? 0xEDB88320U : 0U);
+      }
+    }
+    EXPECT_EQ(sqlite::crc32(bytes), ~naive) << size;
+  }
+}
+
+TEST_F(Map, IsReadAsItWasSaved) {
+  std::string saved;
+  {
+    make();
+    MapFile map = open();
+    saved = content(map);
+    EXPECT_EQ(map.next_place(), 80U);
+    EXPECT_EQ(map.sessions().size(), 2U);
+    EXPECT_EQ(map.sessions()[1].name, "tuesday");
+    EXPECT_EQ(map.sessions()[1].frames, 44U);
+    EXPECT_EQ(map.sessions()[1].places, 40U);
+    EXPECT_EQ(map.thumbnail(40)->jpeg, test::sample_place(40, 700));
+    EXPECT_FALSE(map.thumbnail(41));
+    EXPECT_EQ(numbers(map).size(), 80U);
+  }
+  EXPECT_EQ(content(), saved);
+  EXPECT_EQ(content(open()), saved);
+}
+
+TEST_F(Map, ThatIsClosedIsOneFileWhoseKindIsSeen) {
+  make();
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
+  const std::string bytes = test::read_all(file());
+  EXPECT_EQ(bytes.substr(0, 15), "SQLite format 3");
+  EXPECT_EQ(bytes.substr(68, 4), "SeqL");
+  EXPECT_EQ(bytes.substr(60, 4), std::string("\0\0\0\1", 4));
+  (void)content();
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
+}
+
+TEST_F(Map, TakesPlacesOfAnySize) {
+  for (const std::uint64_t size : {1U, 7U, 8'192U, 1'048'576U, 5'000'000U}) {
+    sqlite::MapForm form = test::sample_form();
+    form.place_bytes = size;
+    const fs::path path = file(std::to_string(size));
+    std::string saved;
+    {
+      MapFile map = MapFile::open(path, form);
+      const std::int64_t id = map.begin_session("a", 0, "");
+      test::save_sample(map, id, 0, 9);
+      test::save_sample(map, id, 10, 0);
+      saved = content(map);
+    }
+    EXPECT_EQ(content(MapFile::read_only(path)), saved);
+  }
+  for (const std::uint64_t size : {std::uint64_t{0}, (std::uint64_t{1} << 26U) + 1}) {
+    sqlite::MapForm form = test::sample_form();
+    form.place_bytes = size;
+    const std::string fault = setup_error([&] { (void)MapFile::open(file("bad"), form); });
+    EXPECT_TRUE(says(fault, "bytes"));
+    EXPECT_FALSE(fs::exists(file("bad")));
+  }
+}
+
+TEST_F(Map, RefusesBatchesThatDoNotFit) {
+  MapFile map = open();
+  const std::int64_t first = map.begin_session("a", 0, "");
+  test::save_sample(map, first, 0, 5);
+  const std::string before = content(map);
+  const std::vector<std::byte> place = test::sample_place(0);
+  for (const std::uint64_t number : {std::uint64_t{4}, std::uint64_t{1} << 62U}) {
+    const std::array<sqlite::PlaceRecord, 1> record{{{number, 0, 0}}};
+    EXPECT_THROW(map.save(first, {.records = record, .places = place}), std::invalid_argument);
+  }
+  const std::array<sqlite::PlaceRecord, 1> record{{{9, 0, 0}}};
+  EXPECT_THROW(map.save(first, {.records = record}), std::invalid_argument);
+  EXPECT_THROW(map.save(first + 1, {}), std::invalid_argument);
+  EXPECT_EQ(content(map), before);
+  const std::string fault = setup_error([&] { (void)map.begin_session("a", 0, ""); });
+  EXPECT_TRUE(says(fault, "there is a session 'a' already"));
+  (void)map.begin_session("b", 0, "");
+  EXPECT_THROW(map.save(first, {}), std::invalid_argument);
+}
+
+TEST_F(Map, PlacesThatGoDoNotComeBackAndTheirNumbersAreNotUsedAgain) {
+  std::mt19937_64 random(5);
+  std::set<std::uint64_t> left;
+  MapFile map = open();
+  const std::int64_t id = map.begin_session("a", 0, "");
+  for (std::uint64_t batch = 0; batch < 60; ++batch) {
+    SCOPED_TRACE(batch);
+    const std::uint64_t next = map.next_place();
+    ASSERT_EQ(next, batch * 7);
+    std::vector<std::uint64_t> removed;
+    for (int i = 0; i < 6; ++i) removed.push_back(random() % (next + 8));
+    for (std::uint64_t number = next; number < next + 7; ++number) left.insert(number);
+    for (const std::uint64_t number : removed) left.erase(number);
+    test::save_sample(map, id, batch * 8, 7, removed);
+    ASSERT_EQ(numbers(map), left);
+    ASSERT_EQ(map.sessions()[0].places, left.size());
+  }
+  map.compact();
+  EXPECT_EQ(numbers(map), left);
+  EXPECT_EQ(map.next_place(), 420U);
+  (void)content(map);
+  // Of what was removed nothing is left, in pages of 8 KB for nine tables.
+  EXPECT_LT(fs::file_size(file()), left.size() * 230 + 60 * 800 + 10 * 8192);
+  map.save(id, {.frames = 480, .removed = std::vector<std::uint64_t>(left.begin(), left.end())});
+  EXPECT_EQ(numbers(map).size(), 0U);
+  EXPECT_EQ(map.next_place(), 420U);
+}
+
+TEST_F(Map, ForgetsOneSessionAlone) {
+  make();
+  MapFile map = open();
+  map.forget("monday");
+  EXPECT_EQ(map.sessions().size(), 1U);
+  EXPECT_EQ(numbers(map).size(), 40U);
+  EXPECT_EQ(*numbers(map).begin(), 40U);
+  map.read_links([](const sqlite::SavedLink& link) {
+    EXPECT_EQ(link.session, 2);
+    EXPECT_GE(link.other, 40U);
+  });
+  EXPECT_FALSE(map.thumbnail(0));
+  EXPECT_TRUE(map.thumbnail(40));
+  EXPECT_EQ(map.begin_session("monday", 0, ""), 3);
+  (void)content(map);
+  const std::string fault = setup_error([&] { map.forget("sunday"); });
+  EXPECT_TRUE(says(fault, "there is no session 'sunday'; it has: tuesday, monday"));
+}
+
+TEST_F(Map, TakesInAnotherBehindItsOwn) {
+  make();
+  make("other.seqloop");
+  MapFile map = open();
+  {
+    MapFile other = MapFile::open(file("other.seqloop"), std::nullopt);
+    other.save(2, {.frames = 44, .removed = std::vector<std::uint64_t>{41, 3}});
+    EXPECT_EQ(map.add(other), 80U);
+  }
+  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
+  ASSERT_EQ(sessions.size(), 4U);
+  EXPECT_EQ(sessions[2].name, "monday 2");
+  EXPECT_EQ(sessions[3].places, 39U);
+  EXPECT_EQ(map.next_place(), 160U);
+  EXPECT_EQ(map.thumbnail(150)->jpeg, test::sample_place(70, 700));
+  EXPECT_EQ(map.statistics(4), map.statistics(2));
+  std::vector<sqlite::SavedLink> links;
+  map.read_links([&links](const sqlite::SavedLink& link) { links.push_back(link); });
+  ASSERT_EQ(links.size(), 32U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(links[i + 16].other, links[i].other + 80);
+    EXPECT_EQ(links[i + 16].session, links[i].session + 2);
+  }
+  (void)content(map);
+  sqlite::MapForm form = test::sample_form();
+  form.describer = "another";
+  MapFile unlike = MapFile::open(file("unlike"), form);
+  EXPECT_TRUE(says(setup_error([&] { unlike.add(map); }), "cannot be compared"));
+}
+
+TEST_F(Map, SaysWhatIsWrongWithAFile) {
+  make();
+  const auto refused = [](const fs::path& path) {
+    const std::string message = setup_error([&] { (void)MapFile::read_only(path); });
+    EXPECT_TRUE(says(message, path.filename().string()));
+    return message;
+  };
+  EXPECT_TRUE(says(refused(file("none")), "there is no such map"));
+  EXPECT_TRUE(says(refused(folder_.path()), "is no file"));
+  EXPECT_TRUE(says(refused(folder_.write("empty", "")), "is empty"));
+  EXPECT_TRUE(says(refused(folder_.write("text", std::string(9000, 'x'))), "no SeqLoop map"));
+  std::string bytes = test::read_all(file());
+  bytes[68] = 'T';
+  EXPECT_TRUE(says(refused(folder_.write("foreign", bytes)), "no SeqLoop map"));
+  bytes[68] = 'S';
+  bytes[63] = 2;
+  EXPECT_TRUE(says(refused(folder_.write("newer", bytes)), "a newer SeqLoop"));
+  bytes[63] = 0;
+  EXPECT_TRUE(says(refused(folder_.write("older", bytes)), "is none of a map"));
+  bytes[63] = 1;
+  const auto at = bytes.find("int8 euclidean");
+  bytes[at] = 'I';
+  EXPECT_TRUE(says(refused(folder_.write("flipped", bytes)), "is damaged; `seqloop map recover`"));
+  const std::string none = setup_error([&] { (void)MapFile::open(file("none"), std::nullopt); });
+  EXPECT_TRUE(says(none, "there is no such map"));
+  EXPECT_FALSE(fs::exists(file("none")));
+  sqlite::MapForm form = test::sample_form();
+  form.descriptor_size = 6;
+  const std::string other = setup_error([&] { (void)MapFile::open(file(), form); });
+  EXPECT_TRUE(says(other, "descriptor size 5 and not 6"));
+  MapFile read = MapFile::read_only(file());
+  EXPECT_THROW(read.save(2, {}), sqlite::SaveError);
+}
+
+TEST_F(Map, NamesTheBlockThatIsDamaged) {
+  make();
+  std::string bytes = test::read_all(file());
+  const std::vector<std::byte> place = test::sample_place(57);
+  const std::string text(reinterpret_cast<const char*>(place.data()), place.size());
+  const auto at = bytes.find(text);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 100] ^= 1;
+  const MapFile map = MapFile::read_only(folder_.write("bad", bytes));
+  const std::string fault = setup_error([&] { map.read([](const sqlite::PlaceBlock&) {}); });
+  EXPECT_TRUE(says(fault, "the block from place 50 of session 'tuesday' is damaged"));
+  std::vector<std::string> told;
+  std::size_t places = 0;
+  map.read([&](const sqlite::PlaceBlock& block) { places += block.records.size(); },
+           [&](const std::string& what) { told.push_back(what); });
+  EXPECT_EQ(places, 70U);
+  EXPECT_EQ(told.size(), 1U);
+  EXPECT_EQ(map.check().size(), 1U);
+}
+
+TEST_F(Map, WhatAReaderSeesStaysWhileAnotherWrites) {
+  make();
+  MapFile map = open();
+  test::save_sample(map, 2, 44, 3);
+  const MapFile before = MapFile::read_only(file());
+  const std::string seen = content(before);
+  test::save_sample(map, 2, 48, 3);
+  EXPECT_EQ(content(before), seen);
+  EXPECT_NE(content(), seen);
+}
+
+TEST_F(Map, ADiskThatIsFullCostsNothingThatWasSaved) {
+  make();
+  test::RecordingVfs disk("nothing");
+  MapFile map = open();
+  const std::string before = content(map);
+  std::size_t failures = 0;
+  for (const What what : {What::write, What::sync}) {
+    for (std::size_t works = 0; works < 1000; ++works) {
+      std::size_t calls = 0;
+      disk.refuse = [&](What asked) {
+        if (asked != what || calls++ < works) return SQLITE_OK;
+        return what == What::write ? SQLITE_FULL : SQLITE_IOERR_FSYNC;
+      };
+      try {
+        map.save(2, {.frames = 44, .removed = std::vector<std::uint64_t>{500}});
+        break;
+      } catch (const sqlite::SaveError& error) {
+        EXPECT_TRUE(says(error.what(), what == What::write ? "the disk is full" : "cannot be"));
+        ++failures;
+      }
+      disk.refuse = {};
+      ASSERT_EQ(content(map), before) << works;
+      ASSERT_EQ(content(MapFile::read_only(file())), before) << works;
+    }
+  }
+  disk.refuse = {};
+  EXPECT_GT(failures, 3U);
+  test::save_sample(map, 2, 44, 30);
+  EXPECT_EQ(map.next_place(), 110U);
+  EXPECT_EQ(numbers(map).size(), 110U);
+}
+
+TEST_F(Map, ReadersGoOnWhileTheDiskStalls) {
+  make();
+  test::RecordingVfs disk("nothing");
+  const std::string before = content();
+  MapFile map = open();
+  std::size_t stalls = 0;
+  disk.refuse = [&](What what) {
+    if (what != What::sync) return SQLITE_OK;
+    ++stalls;
+    EXPECT_EQ(content(), before);
+    return SQLITE_OK;
+  };
+  test::save_sample(map, 2, 44, 30);
+  disk.refuse = {};
+  EXPECT_EQ(stalls, 1U);
+  EXPECT_NE(content(), before);
+}
+
+/// Runs `work` in a process of its own, up to the moment in which it would leave, and then until
+/// it is killed.
+class Other {
+ public:
+  template <class Work>
+  explicit Other(Work work) {
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
+    child_ = ::fork();
+    if (child_ == 0) {
+      const auto done = [&ends](bool well) {
+        const char answer = well ? 'y' : 'n';
+        (void)!::write(ends[1], &answer, 1);
+        while (true) ::pause();
+      };
+      try {
+        work(done);
+        done(true);
+      } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        done(false);
+      }
+    }
+    ::close(ends[1]);
+    char answer = 'n';
+    (void)!::read(ends[0], &answer, 1);
+    ::close(ends[0]);
+    well_ = answer == 'y';
+  }
+  Other(const Other&) = delete;
+  Other& operator=(const Other&) = delete;
+  Other(Other&&) = delete;
+  Other& operator=(Other&&) = delete;
+  ~Other() {
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+  }
+  [[nodiscard]] pid_t process() const { return child_; }
+  [[nodiscard]] bool well() const { return well_; }
+
+ private:
+  pid_t child_ = -1;
+  bool well_ = false;
+};
+
+TEST_F(Map, IsWrittenByOneProcessAtATime) {
+  make();
+  const std::string before = content();
+  {
+    const Other other([this](const auto& done) {
+      MapFile map = open();
+      test::save_sample(map, 2, 44, 3);
+      done(true);
+    });
+    ASSERT_TRUE(other.well());
+    const std::string fault = setup_error([this] { (void)open(); });
+    EXPECT_TRUE(says(fault, "process " + std::to_string(other.process()) + " on "));
+    EXPECT_TRUE(says(fault, "--read-only"));
+    EXPECT_NE(content(), before);
+  }
+  MapFile map = open();
+  EXPECT_EQ(map.sessions()[1].frames, 48U);
+}
+
+TEST_F(Map, IsReadFromAFolderThatNobodyMayWriteTo) {
+  make();
+  const std::string closed = content();
+  fs::copy(file(), file("killed.seqloop"));
+  {
+    const Other other([this](const auto& done) {
+      MapFile map = MapFile::open(file("killed.seqloop"), std::nullopt);
+      test::save_sample(map, 2, 44, 3);
+      done(true);
+    });
+    ASSERT_TRUE(other.well());
+  }
+  ASSERT_TRUE(fs::exists(file("killed.seqloop-wal")));
+  fs::remove(file("killed.seqloop-shm"));
+  fs::permissions(folder_.path(), fs::perms(0555));
+  {
+    const Other other([&](const auto& done) {
+      if (::getuid() == 0 && ::setuid(65534) != 0) throw std::runtime_error("cannot be anybody");
+      std::string fault;
+      const bool same = test::content_of(MapFile::read_only(file()), fault) == closed;
+      const std::string text = test::content_of(MapFile::read_only(file("killed.seqloop")), fault);
+      std::string refused;
+      try {
+        (void)open();
+      } catch (const SetupError& error) {
+        refused = error.what();
+      }
+      done(same && fault.empty() && text.starts_with("83 ") &&
+           refused.find("rights") != std::string::npos);
+    });
+    EXPECT_TRUE(other.well());
+  }
+  fs::permissions(folder_.path(), fs::perms(0755));
+}
+
+TEST_F(Map, OfTheFirstReleaseIsRead) {
+  make();
+  const MapFile map = MapFile::read_only(SEQLOOP_SAMPLE_MAPS "/version_1.seqloop");
+  EXPECT_EQ(content(map), content());
+  EXPECT_EQ(map.form(), test::sample_form());
+}
+
+}  // namespace
+}  // namespace seqloop
