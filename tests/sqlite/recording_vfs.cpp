@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 #include <random>
+#include <utility>
 
 namespace seqloop::test {
 namespace {

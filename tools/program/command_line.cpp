@@ -123,17 +123,23 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
   std::vector<std::string> own_names{"config"};
   for (const Option& option : verb.options.options()) own_names.push_back(option.name);
   bool after_unknown_flag = false;
+  std::vector<std::string> words;
   for (const std::string& extra : extras) {
     // What follows an unknown flag is most likely its value.
     const bool flag = extra.starts_with('-');
     if (!flag && std::exchange(after_unknown_flag, false)) continue;
     after_unknown_flag = flag;
+    if (!flag && verb.words) {
+      words.push_back(extra);
+      continue;
+    }
     const std::string name = extra.substr(std::min(extra.find_first_not_of('-'), extra.size()));
     const std::string meant = nearest(name.substr(0, name.find('=')), own_names);
     faults.push_back(
         {extra, "not known to '" + verb.name + "'",
          meant.empty() ? "see seqloop " + verb.name + " --help" : "did you mean --" + meant + "?"});
   }
+  if (verb.words) verb.words(std::move(words));
   std::set<std::string> set_already;
   for (const auto& [option, values] : given.values) {
     if (values.empty()) continue;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "program/options/options.hpp"
 #include "seqloop/fault.hpp"
@@ -18,6 +19,8 @@ struct Verb {
   /// Told what is wrong with the command line already, so that all faults come out at once.
   /// Throws SetupError (exit 2), anything else (exit 1).
   std::function<void(Faults)> run;
+  /// Told what stands on the command line without a flag; nothing: it must all be flags.
+  std::function<void(std::vector<std::string>)> words = {};
   std::string tasks = {};  ///< for the help, after the flags: what it is used for and with which
 };
 

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// `seqloop map` as a user calls it.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "program/program.hpp"
+#include "sqlite/sample_map.hpp"
+
+namespace seqloop {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::MapFile;
+
+class MapVerb : public test::Program {
+ protected:
+  void make(const std::string& name, std::size_t places = 10) const {
+    MapFile map = MapFile::open(file(name), test::sample_form());
+    for (const char* session : {"monday", "tuesday"}) {
+      const std::int64_t id = map.begin_session(session, 1'700'000'000'000'000'000, "k = 10");
+      for (std::uint64_t i = 0; i < 4; ++i) test::save_sample(map, id, i * 11, places);
+    }
+  }
+
+  [[nodiscard]] std::string content(const std::string& name) const {
+    std::string fault;
+    std::string text = test::content_of(MapFile::read_only(file(name)), fault);
+    EXPECT_EQ(fault, "");
+    return text;
+  }
+
+  /// Flips a bit of a place's bytes.
+  void damage(const std::string& name, std::uint64_t place) const {
+    std::string bytes = test::read_all(file(name));
+    const std::vector<std::byte> whole = test::sample_place(place);
+    const auto at = bytes.find({reinterpret_cast<const char*>(whole.data()), whole.size()});
+    ASSERT_NE(at, std::string::npos);
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    folder_.write(name, bytes);
+  }
+
+  test::Outcome expect(int exit_code, const std::string& arguments,
+                       const std::string& words) const {
+    SCOPED_TRACE(arguments);
+    const test::Outcome outcome = run("map " + arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    EXPECT_NE((outcome.out + outcome.err).find(words), std::string::npos)
+        << "no '" << words << "' in:\n"
+        << outcome.out << outcome.err;
+    return outcome;
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& words) const {
+    const std::string before = listing();
+    expect(2, arguments, words);
+    EXPECT_EQ(listing(), before) << arguments << " left something";
+  }
+};
+
+TEST_F(MapVerb, InfoSaysWhatIsInAMap) {
+  make("a");
+  expect(0, "info a", "80 places of 200 bytes, descriptors of 5 values");
+  const auto json = nlohmann::json::parse(expect(0, "info a --json", "{").out);
+  EXPECT_EQ(json["places"], 80);
+  EXPECT_EQ(json["descriptor_size"], 5);
+  EXPECT_EQ(json["sessions"].size(), 2U);
+  EXPECT_EQ(json["sessions"][1]["name"], "tuesday");
+  EXPECT_EQ(json["sessions"][1]["places"], 40);
+  EXPECT_EQ(json["sessions"][1]["frames"], 44);
+  EXPECT_EQ(listing(), "a ");
+}
+
+TEST_F(MapVerb, CheckNamesWhatIsDamagedAndRecoverLeavesItOut) {
+  make("a");
+  expect(0, "check a", "80 places in 2 sessions, all of them whole");
+  damage("a", 57);
+  expect_refused("check a", "a: the block from place 50 of session 'tuesday' is damaged; `seqloop");
+  const auto outcome = expect(0, "recover a b", "b: 70 places in 2 sessions");
+  EXPECT_NE(outcome.err.find("lost: session 'tuesday': 10 of 40 places"), std::string::npos);
+  expect(0, "check b", "all of them whole");
+  expect_refused("recover a b", "there is such a file already");
+  folder_.write("text", std::string(20'000, 'x'));
+  expect_refused("recover text c", "nothing of a map is whole in it");
+}
+
+TEST_F(MapVerb, MergePutsMapsBehindEachOther) {
+  make("a");
+  make("b");
+  expect(0, "merge a b --out c", "c: 160 places in 4 sessions");
+  expect(0, "check c", "160 places in 4 sessions");
+  EXPECT_EQ(listing().find("partial"), std::string::npos);
+  expect_refused("merge a b --out b", "there is such a file already");
+  expect_refused("merge a none --out d", "there is no such map");
+  expect_refused("merge a --out d", "seqloop map merge A B");
+}
+
+TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
+  make("a");
+  {
+    MapFile map = MapFile::open(file("a"), std::nullopt);
+    (void)map.begin_session("empty, \"quoted\"", 3, "");
+    map.save(3, {.frames = 2, .removed = std::vector<std::uint64_t>{0, 44}});
+  }
+  expect(0, "export a --out folder", "");
+  for (const char* name : {"map.json", "places.csv", "links.csv", "session-1.npy", "session-3.npy",
+                           "thumbnail-10.jpg"}) {
+    EXPECT_TRUE(exists(std::string("folder/") + name)) << name;
+  }
+  EXPECT_EQ(fs::file_size(file("folder/session-2.npy")), 128U + 39 * 200);
+  expect(0, "import folder --out b", "");
+  EXPECT_EQ(content("b"), content("a"));
+  expect_refused("import folder --out b", "there is such a file already");
+  fs::resize_file(file("folder/session-2.npy"), 5000);
+  expect_refused("import folder --out c", "session-2.npy: its numbers are not");
+  fs::remove(file("folder/places.csv"));
+  expect_refused("import folder --out c", "places.csv");
+  folder_.write("folder/map.json", "{}");
+  expect_refused("import folder --out c", "map.json");
+}
+
+TEST_F(MapVerb, ForgetAndCompactMakeItSmaller) {
+  make("a", 300);
+  const auto whole = fs::file_size(file("a"));
+  expect(0, "forget a monday", "a: ");
+  expect(0, "compact a", "a: ");
+  EXPECT_LT(fs::file_size(file("a")), whole * 6 / 10);
+  expect(0, "check a", "1200 places in 1 sessions");
+  expect_refused("forget a monday", "there is no session 'monday'; it has: tuesday");
+  expect_refused("compact none", "there is no such map");
+  EXPECT_EQ(listing(), "a ");
+}
+
+TEST_F(MapVerb, SaysHowItIsUsed) {
+  EXPECT_NE(run("map --help").out.find("seqloop map recover DAMAGED NEW"), std::string::npos);
+  expect_refused("", "what is to be done with it?");
+  expect_refused("inf a", "did you mean 'info'?");
+  expect_refused("info", "seqloop map info FILE");
+  expect_refused("info a b", "2 names after it");
+  expect_refused("info a --out b", "map info does not take it");
+  expect_refused("check a --json", "only map info takes it");
+  expect_refused("info a --jsn", "did you mean --json?");
+  folder_.write("empty", "");
+  expect_refused("info empty", "is empty: nothing was saved in it");
+}
+
+}  // namespace
+}  // namespace seqloop

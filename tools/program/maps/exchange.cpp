@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "program/maps/exchange.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "files/npy_header.hpp"
+#include "files/output_folder.hpp"
+#include "program/maps/new_map.hpp"
+#include "program/process/interruption.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::program {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::MapFile;
+using sqlite::MapForm;
+
+constexpr const char* places_header = "place,session,frame,time_ns";
+constexpr const char* links_header = "session,frame,visit,place,other,probability";
+
+/// NumPy's type of what places consist of, as far as their size tells.
+std::pair<std::string, std::uint64_t> type_of(const MapForm& form) {
+  if (form.place_bytes == form.descriptor_size) return {"|i1", form.place_bytes};
+  if (form.place_bytes == 4 * form.descriptor_size) return {"<f4", form.descriptor_size};
+  return {"|u1", form.place_bytes};
+}
+
+std::string npy_header(const MapForm& form, std::uint64_t rows) {
+  const auto& [type, columns] = type_of(form);
+  std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}), }}",
+                                 type, rows, columns);
+  text.resize(117, ' ');  // 128 bytes with what stands before and behind
+  return std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + text + '\n';
+}
+
+nlohmann::json described(const MapFile& map, const sqlite::SessionFacts& facts) {
+  nlohmann::json json{{"name", facts.name},
+                      {"began_ns", facts.began_ns},
+                      {"settings", facts.settings},
+                      {"frames", facts.frames}};
+  if (const auto statistics = map.statistics(facts.id)) {
+    json["statistics"] = {{"frames", statistics->frames},
+                          {"mean", statistics->mean},
+                          {"variance", statistics->variance}};
+  }
+  return json;
+}
+
+/// The cells of a table under a header that must be this one. Throws SetupError.
+std::vector<std::vector<std::string>> cells_of(const fs::path& file, const std::string& header) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!std::getline(stream, line) || line != header) {
+    throw SetupError({file.string(), "does not begin with the line " + header,
+                      "name a folder that `seqloop map export` wrote"});
+  }
+  std::vector<std::vector<std::string>> rows;
+  while (std::getline(stream, line)) {
+    std::vector<std::string> cells(1);
+    for (const char letter : line) {
+      if (letter == ',') {
+        cells.emplace_back();
+      } else {
+        cells.back() += letter;
+      }
+    }
+    rows.push_back(std::move(cells));
+  }
+  return rows;
+}
+
+template <class Number>
+Number number_in(const fs::path& file, std::size_t row, const std::string& cell) {
+  Number number{};
+  const char* end = cell.data() + cell.size();
+  const auto [stopped, error] = std::from_chars(cell.data(), end, number);
+  if (error != std::errc() || stopped != end) {
+    throw SetupError({fmt::format("{}:{}", file.string(), row + 2), "'" + cell + "' is no number"});
+  }
+  return number;
+}
+
+void check_cells(const fs::path& file, const std::vector<std::vector<std::string>>& rows,
+                 std::size_t columns) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() == columns) continue;
+    throw SetupError({fmt::format("{}:{}", file.string(), i + 2),
+                      fmt::format("{} cells and not {}", rows[i].size(), columns)});
+  }
+}
+
+std::vector<std::byte> bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  std::vector<std::byte> bytes(fs::file_size(file, error));
+  if (!stream || error ||
+      !stream.read(reinterpret_cast<char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()))) {
+    throw SetupError(
+        {file.string(), "cannot be read", "name a folder that `seqloop map export` wrote"});
+  }
+  return bytes;
+}
+
+/// The bytes of a session's places.
+std::vector<std::byte> places_in(const fs::path& file, std::uint64_t bytes) {
+  std::vector<std::byte> all = bytes_of(file);
+  std::string start;
+  for (const std::byte byte : std::span(all).first(std::min<std::size_t>(all.size(), 12))) {
+    start += std::to_integer<char>(byte);
+  }
+  const std::uint64_t from = files::npy_data_offset(start, file.string());
+  if (from > all.size() || all.size() - from != bytes) {
+    throw SetupError(
+        {file.string(),
+         fmt::format("its numbers are not the {} bytes of the places in places.csv", bytes)});
+  }
+  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(from));
+  return all;
+}
+
+/// What belongs to one session.
+struct Part {
+  std::vector<sqlite::PlaceRecord> records;
+  std::vector<sqlite::SavedLink> links;
+  std::vector<sqlite::SavedThumbnail> thumbnails;
+};
+
+std::map<std::int64_t, Part> parts_of(const fs::path& folder) {
+  std::map<std::int64_t, Part> parts;
+  const fs::path places = folder / "places.csv";
+  const auto rows = cells_of(places, places_header);
+  check_cells(places, rows, 4);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto number = number_in<std::uint64_t>(places, i, rows[i][0]);
+    Part& part = parts[number_in<std::int64_t>(places, i, rows[i][1])];
+    part.records.push_back({number, number_in<std::uint64_t>(places, i, rows[i][2]),
+                            number_in<std::int64_t>(places, i, rows[i][3])});
+    const fs::path picture = folder / fmt::format("thumbnail-{}.jpg", number);
+    if (fs::exists(picture)) part.thumbnails.push_back({number, bytes_of(picture)});
+  }
+  const fs::path links = folder / "links.csv";
+  const auto found = cells_of(links, links_header);
+  check_cells(links, found, 6);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::vector<std::string>& row = found[i];
+    sqlite::SavedLink link{number_in<std::int64_t>(links, i, row[0]),
+                           number_in<std::uint64_t>(links, i, row[1]), std::nullopt,
+                           number_in<std::uint64_t>(links, i, row[4]),
+                           number_in<double>(links, i, row[5])};
+    if (row[2] == "0") link.place = number_in<std::uint64_t>(links, i, row[3]);
+    parts[link.session].links.push_back(link);
+  }
+  return parts;
+}
+
+void import_sessions(const nlohmann::json& json, const fs::path& folder, MapFile& map) {
+  std::map<std::int64_t, Part> parts = parts_of(folder);
+  std::int64_t number = 0;
+  for (const nlohmann::json& said : json.at("sessions")) {
+    stop_if_interrupted();
+    const Part& part = parts[++number];
+    const std::int64_t id =
+        map.begin_session(said.at("name"), said.at("began_ns"), said.at("settings"));
+    std::optional<sqlite::SavedStatistics> statistics;
+    if (said.contains("statistics")) {
+      const nlohmann::json& values = said.at("statistics");
+      statistics = {values.at("frames"), values.at("mean"), values.at("variance")};
+    }
+    const std::vector<std::byte> places = places_in(folder / fmt::format("session-{}.npy", number),
+                                                    part.records.size() * map.form().place_bytes);
+    map.save(id, {.frames = said.at("frames"),
+                  .records = part.records,
+                  .places = places,
+                  .links = part.links,
+                  .thumbnails = part.thumbnails,
+                  .statistics = statistics ? &*statistics : nullptr});
+    parts.erase(number);
+  }
+  if (!parts.empty()) {
+    throw SetupError({(folder / "places.csv").string(),
+                      fmt::format("session {} is not in map.json", parts.begin()->first)});
+  }
+}
+
+}  // namespace
+
+void export_map(const MapFile& map, const fs::path& folder) {
+  files::OutputFolder out(folder);
+  const MapForm& form = map.form();
+  nlohmann::json json{{"form", form.form},
+                      {"describer", form.describer},
+                      {"descriptor_size", form.descriptor_size},
+                      {"place_bytes", form.place_bytes},
+                      {"sessions", nlohmann::json::array()}};
+  std::map<std::int64_t, std::int64_t> numbers;  // of sessions, from 1 on without gaps
+  for (const sqlite::SessionFacts& facts : map.sessions()) {
+    numbers.emplace(facts.id, static_cast<std::int64_t>(numbers.size()) + 1);
+    json["sessions"].push_back(described(map, facts));
+  }
+  out.write("map.json", json.dump(2) + '\n');
+
+  std::string table = std::string(places_header) + '\n';
+  std::map<std::int64_t, std::pair<std::string, std::uint64_t>> open;  // bytes and rows
+  const auto close = [&] {
+    for (const auto& [number, content] : open) {
+      out.write(fmt::format("session-{}.npy", number),
+                npy_header(form, content.second) + content.first);
+    }
+    open.clear();
+  };
+  std::int64_t newest = 0;
+  map.read([&](const sqlite::PlaceBlock& block) {
+    stop_if_interrupted();
+    const std::int64_t session = numbers.at(block.session);
+    if (session != std::exchange(newest, session)) close();
+    auto& [bytes, rows] = open[session];
+    bytes.append(reinterpret_cast<const char*>(block.places.data()), block.places.size());
+    rows += block.records.size();
+    for (const sqlite::PlaceRecord& record : block.records) {
+      table += fmt::format("{},{},{},{}\n", record.number, session, record.frame, record.time_ns);
+    }
+  });
+  close();
+  for (const sqlite::SessionFacts& facts : map.sessions()) {
+    if (facts.places > 0) continue;
+    out.write(fmt::format("session-{}.npy", numbers.at(facts.id)), npy_header(form, 0));
+  }
+  out.write("places.csv", table);
+
+  table = std::string(links_header) + '\n';
+  map.read_links([&](const sqlite::SavedLink& link) {
+    table += fmt::format("{},{},{},{},{},{}\n", numbers.at(link.session), link.frame,
+                         link.place ? 0 : 1, link.place.value_or(0), link.other, link.probability);
+  });
+  out.write("links.csv", table);
+  map.read_thumbnails([&](const sqlite::SavedThumbnail& picture) {
+    out.write(fmt::format("thumbnail-{}.jpg", picture.place), picture.jpeg);
+  });
+  out.commit();
+}
+
+void import_map(const fs::path& folder, const fs::path& out) {
+  const fs::path file = folder / "map.json";
+  try {
+    const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+    NewMap made(out);
+    MapFile& map = made.open({json.at("form"), json.at("describer"), json.at("descriptor_size"),
+                              json.at("place_bytes")});
+    import_sessions(json, folder, map);
+    made.commit();
+  } catch (const nlohmann::json::exception& error) {
+    throw SetupError(
+        {file.string(), error.what(), "name a folder that `seqloop map export` wrote"});
+  } catch (const std::invalid_argument& error) {
+    throw SetupError({folder.string(), error.what(), "places.csv must list places in order"});
+  }
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "program/maps/new_map.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "files/partial.hpp"
+#include "seqloop/fault.hpp"
+#include "seqloop/files/output_file.hpp"
+
+namespace seqloop::program {
+
+namespace fs = std::filesystem;
+
+NewMap::NewMap(fs::path path) : path_(std::move(path)) {
+  const std::string name = path_.string();
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path_, error))) {
+    throw SetupError({name, "there is such a file already", "choose another name, or remove it"});
+  }
+  const files::Partial made = files::make_partial(path_, files::PartialKind::file);
+  if (made.descriptor < 0) {
+    throw SetupError({name, "cannot be made: " + std::string(std::strerror(errno)),
+                      "look at the rights of its folder"});
+  }
+  ::close(made.descriptor);  // an empty file becomes a map, and is locked as such
+  partial_ = made.path;
+}
+
+NewMap::~NewMap() {
+  map_.reset();
+  if (partial_.empty()) return;
+  std::error_code error;
+  for (const char* tail : {"", "-wal", "-shm", "-journal"}) {
+    fs::remove(partial_.string() + tail, error);
+  }
+}
+
+sqlite::MapFile& NewMap::open(const sqlite::MapForm& form) {
+  return map_.emplace(sqlite::MapFile::open(partial_, form));
+}
+
+void NewMap::commit() {
+  map_.reset();
+  const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+  if (::rename(partial_.c_str(), path_.c_str()) != 0) {
+    throw files::IoError(path_.string(), std::strerror(errno));
+  }
+  partial_.clear();
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  (void)::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace seqloop::program

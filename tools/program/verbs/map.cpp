@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "program/maps/exchange.hpp"
+#include "program/maps/new_map.hpp"
+#include "program/process/interruption.hpp"
+#include "program/process/outputs.hpp"
+#include "program/process/say.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/sqlite/map_file.hpp"
+#include "seqloop/sqlite/recover.hpp"
+
+namespace seqloop::program {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::MapFile;
+
+struct MapSettings {
+  std::vector<std::string> words;
+  fs::path out;
+  bool json = false;
+};
+
+std::uint64_t places_of(const std::vector<sqlite::SessionFacts>& sessions) {
+  std::uint64_t places = 0;
+  for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
+  return places;
+}
+
+void info(const MapSettings& settings) {
+  const fs::path file = settings.words[1];
+  const MapFile map = MapFile::read_only(file);
+  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
+  const sqlite::MapForm& form = map.form();
+  const std::uintmax_t bytes = fs::file_size(file);
+  if (settings.json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const sqlite::SessionFacts& facts : sessions) {
+      list.push_back({{"name", facts.name},
+                      {"places", facts.places},
+                      {"frames", facts.frames},
+                      {"began_ns", facts.began_ns},
+                      {"settings", facts.settings}});
+    }
+    const nlohmann::ordered_json json{{"places", places_of(sessions)},
+                                      {"descriptor_size", form.descriptor_size},
+                                      {"place_bytes", form.place_bytes},
+                                      {"form", form.form},
+                                      {"describer", form.describer},
+                                      {"next_place", map.next_place()},
+                                      {"file_bytes", bytes},
+                                      {"sessions", list}};
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return;
+  }
+  std::string text = fmt::format(
+      "{} places of {} bytes, descriptors of {} values\nform: {}\ndescribed by: {}\nfile: {} "
+      "bytes\n\n"
+      "      places      frames  session\n",
+      places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer,
+      bytes);
+  for (const sqlite::SessionFacts& facts : sessions) {
+    text += fmt::format("{:>12}{:>12}  {}\n", facts.places, facts.frames, printable(facts.name));
+  }
+  fmt::print("{}", printable_lines(text));
+}
+
+void check(const MapSettings& settings) {
+  const std::string file = settings.words[1];
+  const MapFile map = MapFile::read_only(file);
+  Faults faults;
+  for (const std::string& wrong : map.check()) {
+    faults.push_back({file, wrong, "`seqloop map recover` copies what is whole into a new file"});
+  }
+  refuse(std::move(faults));
+  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
+  say("{}: {} places in {} sessions, all of them whole", file, places_of(sessions),
+      sessions.size());
+}
+
+void recover(const MapSettings& settings) {
+  NewMap out(settings.words[2]);
+  const sqlite::Recovered found = sqlite::recover(settings.words[1], out.partial());
+  out.commit();
+  for (const std::string& lost : found.lost) say("{}: lost: {}", settings.words[1], lost);
+  say("{}: {} places in {} sessions, {} links, {} thumbnails", settings.words[2], found.places,
+      found.sessions, found.links, found.thumbnails);
+}
+
+void merge(const MapSettings& settings) {
+  NewMap out(settings.out);
+  MapFile* map = nullptr;
+  for (std::size_t i = 1; i < settings.words.size(); ++i) {
+    stop_if_interrupted();
+    const MapFile from = MapFile::read_only(settings.words[i]);
+    if (map == nullptr) map = &out.open(from.form());
+    const std::uint64_t added = map->add(from);
+    say("{}: its place 0 is place {}", settings.words[i], added);
+  }
+  const std::vector<sqlite::SessionFacts> sessions = map->sessions();
+  out.commit();
+  say("{}: {} places in {} sessions", settings.out.string(), places_of(sessions), sessions.size());
+}
+
+void exchange(const MapSettings& settings, bool exports) {
+  if (exports) {
+    export_map(MapFile::read_only(settings.words[1]), settings.out);
+  } else {
+    import_map(settings.words[1], settings.out);
+  }
+}
+
+void change(const MapSettings& settings) {
+  const fs::path file = settings.words[1];
+  const std::uintmax_t before = fs::exists(file) ? fs::file_size(file) : 0;
+  {
+    MapFile map = MapFile::open(file, std::nullopt);
+    if (settings.words[0] == "forget") map.forget(settings.words[2]);
+    if (settings.words[0] == "compact") map.compact();
+  }
+  say("{}: {} bytes, it were {}", file.string(), fs::file_size(file), before);
+}
+
+/// What can be done with maps.
+struct Work {
+  std::string name;
+  std::size_t least;  ///< words that must follow
+  std::size_t most;
+  bool out;  ///< whether it needs --out
+  std::string usage;
+  std::function<void(const MapSettings&)> run;
+};
+
+const std::vector<Work>& works() {
+  static const std::vector<Work> all{
+      {"info", 1, 1, false, "info FILE [--json]", info},
+      {"check", 1, 1, false, "check FILE", check},
+      {"recover", 2, 2, false, "recover DAMAGED NEW", recover},
+      {"merge", 2, 1000, true, "merge A B… --out NEW", merge},
+      {"export", 1, 1, true, "export FILE --out FOLDER",
+       [](const MapSettings& settings) { exchange(settings, true); }},
+      {"import", 1, 1, true, "import FOLDER --out NEW",
+       [](const MapSettings& settings) { exchange(settings, false); }},
+      {"forget", 2, 2, false, "forget FILE SESSION", change},
+      {"compact", 1, 1, false, "compact FILE", change}};
+  return all;
+}
+
+void work_on_map(const MapSettings& settings, Faults faults) {
+  const auto& words = settings.words;
+  const Work* asked = nullptr;
+  std::vector<std::string> names;
+  for (const Work& work : works()) {
+    names.push_back(work.name);
+    if (!words.empty() && work.name == words[0]) asked = &work;
+  }
+  if (asked == nullptr) {
+    const std::string meant = words.empty() ? "" : nearest(words[0], names);
+    faults.push_back({words.empty() ? "map" : "'" + words[0] + "'",
+                      words.empty() ? "what is to be done with it?" : "maps cannot do that",
+                      meant.empty() ? "see seqloop map --help" : "did you mean '" + meant + "'?"});
+    refuse(std::move(faults));
+  }
+  const std::size_t given = words.size() - 1;
+  if (given < asked->least || given > asked->most) {
+    faults.push_back({"map " + asked->name, fmt::format("{} names after it", given),
+                      "seqloop map " + asked->usage});
+  }
+  if (settings.out.empty() == asked->out) {
+    faults.push_back({"out", asked->out ? "not given" : "map " + asked->name + " does not take it",
+                      "seqloop map " + asked->usage});
+  }
+  if (settings.json && asked->name != "info") {
+    faults.push_back({"json", "only map info takes it", "leave it out here"});
+  }
+  refuse(std::move(faults));
+  take_interruptions();
+  asked->run(settings);
+}
+
+}  // namespace
+
+Verb map_verb() {
+  const auto settings = std::make_shared<MapSettings>();
+  Verb verb{"map",
+            "Look into a map that was saved, repair, merge, exchange or shrink it",
+            {},
+            [settings](Faults faults) { work_on_map(*settings, std::move(faults)); }};
+  verb.options.section("Task");
+  verb.options.path("out", Access::writes, settings->out,
+                    "merge, import: the new map; export: a new folder");
+  verb.options.flag("json", settings->json, "info: as JSON");
+  verb.words = [settings](std::vector<std::string> words) { settings->words = std::move(words); };
+  verb.tasks = "What it does:";
+  for (const Work& work : works()) verb.tasks += "\n  seqloop map " + work.usage;
+  return verb;
+}
+
+}  // namespace seqloop::program
