@@ -19,9 +19,9 @@ struct Verb {
   /// Told what is wrong with the command line already, so that all faults come out at once.
   /// Throws SetupError (exit 2), anything else (exit 1).
   std::function<void(Faults)> run;
+  std::string tasks = {};  ///< for the help, after the flags: what it is used for and with which
   /// Told what stands on the command line without a flag; nothing: it must all be flags.
   std::function<void(std::vector<std::string>)> words = {};
-  std::string tasks = {};  ///< for the help, after the flags: what it is used for and with which
 };
 
 /// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
