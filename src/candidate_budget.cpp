@@ -23,14 +23,16 @@ std::size_t most_runs(const MatcherConfig& config) {
 template <class Visit>
 bool for_each_column(const CandidateBudget::Window& window, CandidateRun run, Visit visit) {
   const Trajectories& lines = *window.trajectories;
+  const CandidateRun session = window.map->order().around(run.first);
+  const std::size_t end = std::min(window.rows, session.last);
   const auto first_row = static_cast<std::int64_t>(run.first);
   const auto last_row = static_cast<std::int64_t>(run.last);
   // In a window that is not full yet, the first frames are still missing.
   const auto frames =
       static_cast<std::size_t>(std::min<std::uint64_t>(lines.window(), window.end - window.first));
   for (std::size_t i = lines.window(); i-- > lines.window() - frames;) {
-    const auto first = std::max<std::int64_t>(first_row + lines.lowest(i), 0);
-    const auto last = std::min(last_row + lines.highest(i), static_cast<std::int64_t>(window.rows));
+    const auto first = std::max(first_row + lines.lowest(i), static_cast<std::int64_t>(session.first));
+    const auto last = std::min(last_row + lines.highest(i), static_cast<std::int64_t>(end));
     if (first >= last) continue;
     if (!visit(window.end + i - lines.window(), static_cast<std::size_t>(first),
                static_cast<std::size_t>(last))) {
@@ -55,6 +57,10 @@ void CandidateBudget::clear() noexcept {
 }
 
 void CandidateBudget::add(const Window& window, CandidateRun range) noexcept {
+  window.map->order().in_sessions(range, [&](CandidateRun part) { add_part(window, part); });
+}
+
+void CandidateBudget::add_part(const Window& window, CandidateRun range) noexcept {
   if (rows_ == most_rows_) return;
   // With nothing left to spend, only what is there already can come in.
   if (distances_ == most_distances_ && !complete(window, range)) return;

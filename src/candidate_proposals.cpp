@@ -83,7 +83,8 @@ CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, 
   const std::size_t before = std::exchange(count_, 0);
   for (std::size_t i = 0; i < before; ++i) {
     // What is remembered goes where count_ is or before, which has been read already.
-    look_closely(queries, map, rows, remembered_[i].row + 1);
+    const std::size_t row = remembered_[i].row;
+    if (map.order().apart(row, row + 1) == 1) look_closely(queries, map, rows, row + 1);
   }
   const std::span<const Alike> found = best_of_scan(queries, map, rows);
   for (const Alike& best : found) prefetch(map, rows, best.row);
@@ -138,8 +139,10 @@ void CandidateProposals::scan(const QueryHistory& queries, const PlaceMap& map, 
 void CandidateProposals::look_closely(const QueryHistory& queries, const PlaceMap& map,
                                       std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
+  const CandidateRun session = map.order().around(row);
+  const std::size_t first = map.order().before(row, slack);
   Alike best{std::numeric_limits<std::uint32_t>::max(), row};
-  for (std::size_t r = row - std::min(row, slack); r < std::min(row + slack + 1, rows); ++r) {
+  for (std::size_t r = first; r < std::min({row + slack + 1, rows, session.last}); ++r) {
     std::uint32_t sum = 0;
     for (std::size_t frame = 0; frame < frames_; ++frame) {
       const std::size_t back = frame * frames_apart;
@@ -147,7 +150,7 @@ void CandidateProposals::look_closely(const QueryHistory& queries, const PlaceMa
     }
     if (sum < best.bits) best = {sum, r};
   }
-  remember(best);
+  remember(map.order(), best);
 }
 
 /// Has the processor fetch what looking closely at a row will read: it is in no cache.
@@ -161,22 +164,24 @@ void CandidateProposals::prefetch(const PlaceMap& map, std::size_t rows,
 }
 
 /// Differing bits of the frame `back` frames before the newest and the row `behind` rows before
-/// `row`; a row that is not there differs as much as by chance.
+/// `row`; a row that its session has not differs as much as by chance.
 std::uint32_t CandidateProposals::differing_bits(const QueryHistory& queries, const PlaceMap& map,
                                                  std::size_t rows, std::size_t back,
                                                  std::size_t row, std::size_t behind) noexcept {
-  if (behind > row || row - behind >= rows) return chance;
+  if (behind > row || row - behind >= rows || map.order().apart(row, row - behind) != behind) {
+    return chance;
+  }
   ++sketches_;
   return map.rows().look_closely(queries.rows(), queries.row_of(newest_ - back),
                                  map.order().slot(row - behind));
 }
 
 /// Keeps a row if it is among the best, and only the best of those that are near each other.
-void CandidateProposals::remember(Alike alike) noexcept {
+void CandidateProposals::remember(const PlaceOrder& order, Alike alike) noexcept {
   const auto begin = remembered_.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>(count_);
   const auto near = std::find_if(begin, end, [&](const Alike& other) {
-    return other.row <= alike.row + near_ && alike.row <= other.row + near_;
+    return order.apart(other.row, alike.row) <= near_;
   });
   if (near != end) {
     if (near->bits <= alike.bits) return;
@@ -200,7 +205,7 @@ void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map,
     const std::size_t frames = reach / frames_between + 1;
     const Proposal proposal{
         chord(static_cast<double>(bits) / (2.0 * chance * static_cast<double>(frames))),
-        row - std::min(row, rows_behind(line, ds_ - ds_ / 2))};
+        map.order().before(row, rows_behind(line, ds_ - ds_ / 2))};
     keep_lowest(proposals_, i, proposal, &Proposal::difference);
   }
 }
@@ -226,9 +231,13 @@ std::size_t CandidateProposals::best_line(const QueryHistory& queries, const Pla
   return static_cast<std::size_t>(std::distance(sums.begin(), std::ranges::min_element(sums)));
 }
 
-void CandidateProposals::skip(std::uint64_t frames) noexcept {
-  for (Alike& alike : remembered_.first(count_)) {
-    alike.row += static_cast<std::size_t>(frames);
+void CandidateProposals::skip(const PlaceOrder& order, std::uint64_t frames) noexcept {
+  const auto by = static_cast<std::size_t>(frames);
+  const std::size_t before = std::exchange(count_, 0);
+  for (std::size_t i = 0; i < before; ++i) {
+    const Alike alike = remembered_[i];
+    if (order.apart(alike.row, alike.row + by) != by) continue;
+    remembered_[count_++] = {alike.bits, alike.row + by};
   }
 }
 

@@ -41,7 +41,8 @@ CandidateRanges::CandidateRanges(Arena& arena, const MatcherConfig& config)
       ranked_(arena.take<ScoredRow>("ranked candidates", k_)),
       ranges_(arena.take<CandidateRun>("candidate ranges", std::max<std::size_t>(k_, 1))) {}
 
-std::span<const CandidateRun> CandidateRanges::choose(std::size_t rows) noexcept {
+std::span<const CandidateRun> CandidateRanges::choose(const PlaceOrder& order,
+                                                      std::size_t rows) noexcept {
   full_search_ = searches_all_ && (kind_ == Candidates::all || ranked_count_ == 0 || rows == 0 ||
                                    matched_frames_ % reinit_ == 0);
   if (rows == 0) return {};
@@ -49,15 +50,19 @@ std::span<const CandidateRun> CandidateRanges::choose(std::size_t rows) noexcept
     ranges_[0] = {0, rows};
     return ranges_.first(1);
   }
-  // Algorithm 4: [T(k) - Num/2, T(k) + Num/2] for k = 1 .. K, clipped to the map.
+  // Algorithm 4: [T(k) - Num/2, T(k) + Num/2] for k = 1 .. K, clipped to the map, and to the
+  // session.
   const std::size_t count = std::min(k_, ranked_count_);
-  for (std::size_t i = 0; i < count; ++i) ranges_[i] = around(ranked_[i].row, rows);
+  for (std::size_t i = 0; i < count; ++i) ranges_[i] = around(order, ranked_[i].row, rows);
   return ranges_.first(count);
 }
 
-CandidateRun CandidateRanges::around(std::size_t row, std::size_t rows) const noexcept {
+CandidateRun CandidateRanges::around(const PlaceOrder& order, std::size_t row,
+                                     std::size_t rows) const noexcept {
   row = std::min(row, rows - 1);
-  return {row - std::min(row, half_range_), std::min(row + half_range_ + 1, rows)};
+  const CandidateRun session = order.around(row);
+  return {order.before(row, half_range_),
+          std::min({row + half_range_ + 1, rows, session.last})};
 }
 
 void CandidateRanges::update(std::span<const double> scores, std::span<const CandidateRun> runs,
@@ -72,9 +77,12 @@ void CandidateRanges::update(std::span<const double> scores, std::span<const Can
   ++matched_frames_;
 }
 
-void CandidateRanges::skip(std::uint64_t frames) noexcept {
+void CandidateRanges::skip(const PlaceOrder& order, std::uint64_t frames) noexcept {
+  const auto by = static_cast<std::size_t>(frames);
   for (ScoredRow& ranked : ranked_.first(ranked_count_)) {
-    ranked.row += static_cast<std::size_t>(frames);
+    // At its session's end it stays.
+    const bool ends = order.apart(ranked.row, ranked.row + by) != by;
+    ranked.row = ends ? order.around(ranked.row).last - 1 : ranked.row + by;
   }
 }
 

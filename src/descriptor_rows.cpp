@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "seqloop/detail/fixed_distance.hpp"
 #include "seqloop/detail/quantised.hpp"
@@ -37,6 +39,23 @@ void in_pieces(std::size_t count, std::size_t most, Work work) {
   for (std::size_t begin = 0; begin < count; begin += most) {
     work(begin, std::min(most, count - begin));
   }
+}
+
+/// Writes a number, the lowest byte first.
+template <class Number>
+void put(Number number, std::span<std::byte> out) {
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    out[i] = static_cast<std::byte>(number >> (8 * i));
+  }
+}
+
+template <class Number>
+Number taken(std::span<const std::byte> bytes) {
+  Number number = 0;
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    number |= static_cast<Number>(std::to_integer<Number>(bytes[i]) << (8 * i));
+  }
+  return number;
 }
 
 }  // namespace
@@ -87,11 +106,91 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
   } else if (words_ > 0) {
     quantise(descriptor, bytes);
   }
+  sketch_row(row, bytes);
+}
+
+void DescriptorRows::sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept {
   if (words_ == 0) return;
-  const std::span<std::uint64_t> words = sketches_.subspan(row * words_, words_);
-  sketch(bytes.first(form_.size), sketched_values_, words);
+  sketch(bytes.first(form_.size), sketched_values_, sketches_.subspan(row * words_, words_));
+  copy_scanned(row);
+}
+
+void DescriptorRows::copy_scanned(std::size_t row) noexcept {
   if (!form_.scanned) return;
-  std::ranges::copy(words.first(scanned_words), scanned_.subspan(row * scanned_words).begin());
+  std::ranges::copy(sketches_.subspan(row * words_, scanned_words),
+                    scanned_.subspan(row * scanned_words).begin());
+}
+
+std::size_t DescriptorRows::saved_size() const noexcept {
+  switch (form_.arithmetic) {
+    case Arithmetic::float32:
+      return form_.size * sizeof(float);
+    case Arithmetic::int8:
+      return form_.size;
+    case Arithmetic::sketch:
+      return words_ * sizeof(std::uint64_t);
+  }
+  return 0;
+}
+
+void DescriptorRows::save(std::size_t row, std::span<std::byte> out) const noexcept {
+  switch (form_.arithmetic) {
+    case Arithmetic::float32:
+      for (std::size_t i = 0; i < form_.size; ++i) {
+        put(std::bit_cast<std::uint32_t>(exact(row)[i]), out.subspan(i * sizeof(float)));
+      }
+      return;
+    case Arithmetic::int8:
+      std::ranges::transform(small(row).first(form_.size), out.begin(),
+                             [](std::int8_t value) { return static_cast<std::byte>(value); });
+      return;
+    case Arithmetic::sketch:
+      for (std::size_t word = 0; word < words_; ++word) {
+        put(sketches_[row * words_ + word], out.subspan(word * sizeof(std::uint64_t)));
+      }
+      return;
+  }
+}
+
+bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noexcept {
+  if (saved.size() != saved_size()) return false;
+  switch (form_.arithmetic) {
+    case Arithmetic::float32: {
+      const std::span<float> values = exact_.subspan(row * stride_, form_.size);
+      bool finite = true;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] =
+            std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
+        finite = finite && std::isfinite(values[i]);
+      }
+      if (!finite) return false;
+      if (words_ > 0) quantise(values, quantised_);
+      sketch_row(row, quantised_);
+      return true;
+    }
+    case Arithmetic::int8: {
+      const std::span<std::int8_t> bytes = small(row);
+      std::int64_t squares = 0;
+      bool symmetric = true;
+      for (std::size_t i = 0; i < saved.size(); ++i) {
+        bytes[i] = static_cast<std::int8_t>(saved[i]);
+        symmetric = symmetric && bytes[i] != std::numeric_limits<std::int8_t>::min();
+        squares += bytes[i] * bytes[i];
+      }
+      if (!symmetric) return false;
+      inverse_lengths_[row] = inverse_length(static_cast<std::int32_t>(squares));
+      sketch_row(row, bytes);
+      return true;
+    }
+    case Arithmetic::sketch:
+      for (std::size_t word = 0; word < words_; ++word) {
+        sketches_[row * words_ + word] =
+            taken<std::uint64_t>(saved.subspan(word * sizeof(std::uint64_t)));
+      }
+      copy_scanned(row);
+      return true;
+  }
+  return false;
 }
 
 void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,

@@ -21,9 +21,11 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back(
         {"map", "it has no places", "add the reference drive before localising in it"});
   }
-  if (config.use == Use::close_loops && map.size() != 0) {
-    faults.push_back({"map", "it holds " + std::to_string(map.size()) + " places already",
-                      "closing loops starts from an empty map"});
+  if (config.use == Use::close_loops && !map.has_room_for_session()) {
+    faults.push_back({"sessions",
+                      "the map has no room for one more than its " +
+                          std::to_string(map.order().sessions()),
+                      "give it room for the drive that is added, too"});
   }
   if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
       map.capacity() < least_places(config)) {
@@ -37,7 +39,7 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back({"map", "it was made for another configuration",
                       "give both the same arithmetic, difference, relocalising and full_map"});
   }
-  if (config.use == Use::localise && map.size() != 0 &&
+  if (map.size() != 0 &&
       config.standardisation.on != (map.statistics().frames() != 0)) {
     faults.push_back({"map",
                       config.standardisation.on ? "its places were not standardised"
@@ -49,6 +51,12 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
 }
 
 Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descriptor_size()}; }
+
+/// The rows of the map that are of the running drive.
+CandidateRun running(const MatcherConfig& config, const PlaceOrder& order) {
+  if (config.use == Use::localise) return {order.size(), order.size()};
+  return order.session(order.sessions() - 1);
+}
 
 /// Query descriptors that must be kept: the window's, and what the change degree of its centre
 /// looks back on. A whole number of what is taken at once, so that this lies in one piece unless
@@ -117,6 +125,7 @@ Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::by
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, ArenaMemory&& memory)
     : Detector(Arena(memory.span()), config, &map, capacity_of(map), std::move(memory)) {
   statistics_.start_from(map.statistics(), config.standardisation.prior_frames);
+  if (config.use == Use::close_loops) static_cast<void>(map.begin_session());
 }
 
 Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
@@ -133,7 +142,7 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       proposals_(arena, config, capacity.places),
       budget_(arena, config),
       decision_(arena, config),
-      belief_(arena, config, capacity.places),
+      belief_(arena, config),
       pending_(arena, config, trajectories_),
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
@@ -195,7 +204,7 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
 void Detector::report_due(FrameReport& report, bool readable) noexcept {
   const std::size_t before = pending_.answers().size();
   if (readable) pending_.believe(belief_, *map_, report.newest);
-  pending_.answer(belief_, *map_, report.newest, window_began_);
+  pending_.answer(*map_, report.newest, window_began_);
   const std::span<const Answer> answers = pending_.answers().subspan(before);
   const bool whole = report.newest >= window_began_ + config_.sequence_length;
   report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
@@ -223,8 +232,10 @@ void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
       constexpr std::size_t near = 6;
       const double score = scores[row];
       if (score == std::numeric_limits<double>::infinity()) continue;
-      const std::size_t first = std::max(run.first, row - std::min(row, near));
-      const std::size_t last = std::min(run.last, row + near + 1);
+      const CandidateRun session = map_->order().around(row);
+      const std::size_t first =
+          std::max({run.first, session.first, row - std::min(row, near)});
+      const std::size_t last = std::min({run.last, session.last, row + near + 1});
       bool lowest = true;
       for (std::size_t other = first; other < last; ++other) {
         lowest = lowest && (scores[other] > score || (scores[other] == score && other >= row));
@@ -242,7 +253,7 @@ std::span<const Answer> Detector::finish() noexcept {
   pending_.clear();
   const std::uint64_t end = queries_.frames();
   if (end > 0 && config_.decision == Decision::probability)
-    pending_.answer(belief_, *map_, end - 1, end);
+    pending_.answer(*map_, end - 1, end);
   restart();
   return pending_.answers();
 }
@@ -267,7 +278,7 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
       report.work.sketches +=
           belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows});
     } else {
-      belief_.pass(1, 0);
+      belief_.pass(map_->order(), 1, 0);
     }
   }
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
@@ -283,8 +294,8 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
         search_.score(slices_, map_->order(), report.newest - config_.sequence_length, run, rows);
   }
   const bool keep_runner_up = report.full_search || relocalises(config_);
-  const auto best = decision_.decide(search_.scores(), budget_.runs(), keep_runner_up,
-                                     proposals_.proposals(), rows);
+  const auto best = decision_.decide(map_->order(), search_.scores(), budget_.runs(),
+                                     keep_runner_up, proposals_.proposals(), rows);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
   if (best && config_.decision == Decision::probability) keep_lines(*best, *report.frame);
@@ -311,10 +322,10 @@ void Detector::skip(std::uint64_t frames) noexcept {
     slices_.repeat();
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
-  ranges_.skip(frames);
-  proposals_.skip(frames);
+  ranges_.skip(map_->order(), frames);
+  proposals_.skip(map_->order(), frames);
   decision_.skip(frames);
-  if (config_.decision == Decision::probability) belief_.pass(frames, 1);
+  if (config_.decision == Decision::probability) belief_.pass(map_->order(), frames, 1);
   change_degree_ = {};
 }
 
@@ -352,7 +363,7 @@ bool Detector::become_place() noexcept {
   // Places that the newest frames still need as they were: those that are no candidates yet.
   const std::size_t keep = config_.exclude + config_.sequence_length;
   const PlaceMap::Taken taken =
-      map_->take(queries_.rows(), queries_.row_of(queries_.newest()), keep);
+      map_->take(queries_.rows(), queries_.row_of(queries_.newest()), queries_.newest(), keep);
   if (taken.removed) {
     slices_.forget(*taken.slot);
     ranges_.removed(*taken.removed);
@@ -361,29 +372,23 @@ bool Detector::become_place() noexcept {
     belief_.removed(*taken.removed);
     pending_.removed(*taken.removed);
   }
-  if (taken.slot) belief_.added(*map_, *taken.slot, map_->size() - 1);
   return taken.slot.has_value();
 }
 
-/// Rows of the map that lines may touch when a frame is matched: closing loops, the places that are
-/// old enough.
+/// Rows of the map that lines may touch when a frame is matched: those of earlier sessions, and the
+/// places of the running drive that are old enough.
 std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
-  if (config_.use == Use::localise) return map_->size();
-  if (centre <= config_.exclude) return 0;
-  const std::uint64_t old = centre - config_.exclude;
-  if (map_->order().straight()) {
-    return static_cast<std::size_t>(std::min<std::uint64_t>(old, map_->size()));
-  }
-  // Every frame became a place, so numbers are frames; the newest ones are all there.
-  const std::uint64_t newer = queries_.frames() - std::min(old, queries_.frames());
-  return map_->size() - static_cast<std::size_t>(std::min<std::uint64_t>(newer, map_->size()));
+  const CandidateRun drive = running(config_, map_->order());
+  if (centre <= config_.exclude || drive.first == drive.last) return drive.first;
+  return map_->order().row_of_frame(centre - config_.exclude);
 }
 
 /// Rows whose neighbourhood is all there, so that what is enhanced by it stays right.
 std::size_t Detector::complete_rows() const noexcept {
-  const bool growing = config_.use == Use::close_loops && map_->size() < map_->capacity();
-  const std::size_t reach = config_.enhance && growing ? config_.rwindow / 2 : 0;
-  return map_->size() - std::min(map_->size(), reach);
+  const CandidateRun drive = running(config_, map_->order());
+  const std::size_t reach =
+      config_.enhance && map_->size() < map_->capacity() ? config_.rwindow / 2 : 0;
+  return drive.last - std::min(drive.last - drive.first, reach);
 }
 
 /// Where all rows are candidates, every difference that a frame can be asked for while it is in the
@@ -407,18 +412,19 @@ std::size_t Detector::fill_columns(std::uint64_t newest) noexcept {
 bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcept {
   const CandidateBudget::Window window{&slices_,      map_,       &trajectories_,
                                        window_began_, newest + 1, rows};
-  const std::span<const CandidateRun> ranges = ranges_.choose(rows);
+  const std::span<const CandidateRun> ranges = ranges_.choose(map_->order(), rows);
   const std::span<const CandidateProposals::Proposal> proposals = proposals_.proposals();
   budget_.clear();
   // Where the robot is believed to be comes before all.
   if (const auto& likeliest = belief_.likeliest(); likeliest && relocalises(config_)) {
     const std::size_t after = trajectories_.window() - 1 - trajectories_.centre();
-    budget_.add(window, ranges_.around(likeliest->row - std::min(likeliest->row, after), rows));
+    const std::size_t centre = map_->order().before(likeliest->row, after);
+    budget_.add(window, ranges_.around(map_->order(), centre, rows));
   }
   // The best of both first, so that neither starves.
   for (std::size_t i = 0; i < std::max(ranges.size(), proposals.size()); ++i) {
     if (i < ranges.size()) budget_.add(window, ranges[i]);
-    if (i < proposals.size()) budget_.add(window, ranges_.around(proposals[i].centre, rows));
+    if (i < proposals.size()) budget_.add(window, ranges_.around(map_->order(), proposals[i].centre, rows));
   }
   return ranges_.full_search();
 }

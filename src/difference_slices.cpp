@@ -28,6 +28,13 @@ std::size_t margin_of(const MatcherConfig& config) {
   return static_cast<std::size_t>(std::ceil(beyond + vector));
 }
 
+/// Rows and those around them that they are enhanced by, of their own sessions.
+CandidateRun with_around(const PlaceOrder& order, std::size_t first, std::size_t last,
+                         std::size_t reach) {
+  return {order.before(first, reach),
+          std::min(order.around(last - 1).last, last + reach)};
+}
+
 }  // namespace
 
 DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config,
@@ -64,10 +71,9 @@ std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing
                                       const PlaceMap& map, std::uint64_t frame, std::size_t first,
                                       std::size_t last) noexcept {
   const std::size_t reach = enhance_ ? contrast_.reach() : 0;
-  const std::size_t from = first - std::min(first, reach);
-  const std::size_t to = std::min(last + reach, map.size());
+  const CandidateRun wider = with_around(map.order(), first, last, reach);
   std::size_t computed = 0;
-  map.order().in_slots(from, to, [&](std::size_t, std::size_t slot, std::size_t count) {
+  map.order().in_slots(wider.first, wider.last, [&](std::size_t, std::size_t slot, std::size_t count) {
     computed +=
         differences.fill(frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
           map.rows().compare(queries_->rows(), queries_->row_of(frame), begin, out);
@@ -75,11 +81,16 @@ std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing
   });
   if (enhance_) {
     enhanced.fill(frame, first, last, [&](std::size_t begin, std::span<Value> out) {
-      const std::span<const Value> column(differences.column(frame), map.size());
+      // Nothing goes from a map where this is asked for: rows are slots.
       const double scale = whole_ ? unit_ : 1.0;
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = contrast_.enhance(column, begin + i, scale);
-      }
+      map.order().in_sessions({begin, begin + out.size()}, [&](CandidateRun part) {
+        const CandidateRun session = map.order().around(part.first);
+        const std::span<const Value> column(differences.column(frame) + session.first,
+                                            session.last - session.first);
+        for (std::size_t row = part.first; row < part.last; ++row) {
+          out[row - begin] = contrast_.enhance(column, row - session.first, scale);
+        }
+      });
     });
   }
   return computed;
@@ -105,8 +116,9 @@ std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, 
                                       std::size_t last) const noexcept {
   if (first >= last) return 0;
   const std::size_t reach = enhance_ ? contrast_.reach() : 0;
+  const CandidateRun wider = with_around(map.order(), first, last, reach);
   std::size_t count = 0;
-  map.order().in_slots(first - std::min(first, reach), std::min(last + reach, map.size()),
+  map.order().in_slots(wider.first, wider.last,
                        [&](std::size_t, std::size_t slot, std::size_t rows) {
                          count += whole_ ? whole_differences_.missing(frame, slot, slot + rows)
                                          : exact_.missing(frame, slot, slot + rows);

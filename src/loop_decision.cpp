@@ -31,15 +31,18 @@ Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs
 
 }  // namespace
 
-std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
+std::optional<BestRow> LoopDecision::decide(const PlaceOrder& order, std::span<const double> scores,
                                             std::span<const CandidateRun> runs, bool keep_runner_up,
                                             std::span<const CandidateProposals::Proposal> proposals,
                                             std::size_t rows) noexcept {
   past_.next();
   const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
   if (best.scored == 0) return std::nullopt;
+  // Other sessions may know the same place: the row stands out within its own.
+  const CandidateRun session = order.around(best.row);
   const auto outside = [&](std::size_t row) {
-    return row + half_rwindow_ < best.row || row > best.row + half_rwindow_;
+    return (row + half_rwindow_ < best.row || row > best.row + half_rwindow_) &&
+           session.first <= row && row < session.last;
   };
   Lowest runner_up = lowest(scores, runs, outside);
   for (const CandidateProposals::Proposal& proposal : proposals) {
@@ -52,7 +55,7 @@ std::optional<BestRow> LoopDecision::decide(std::span<const double> scores,
     runner_up.row = proposal.centre;
     runner_up.score = proposal.difference;
   }
-  const std::optional<double> past = past_.lowest(best.row, half_rwindow_, rows);
+  const std::optional<double> past = past_.lowest(best.row, half_rwindow_, rows, session);
   past_.remember({best.row, best.score});
   if (runner_up.scored > 0) past_.remember({runner_up.row, runner_up.score});
   if (past) runner_up = {runner_up.row, std::min(runner_up.score, *past), runner_up.scored + 1};

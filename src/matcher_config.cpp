@@ -148,6 +148,7 @@ Faults validate(const Capacity& capacity, const MatcherConfig& config) {
   Faults faults;
   check_range(faults, "places", capacity.places, 1, most_places);
   check_range(faults, "descriptor_size", capacity.descriptor_size, 1, std::size_t{1} << 22U);
+  check_range(faults, "sessions", capacity.sessions, 1, most_places);
   const bool small = config.arithmetic != Arithmetic::float32 || scans(config);
   if (small && capacity.descriptor_size > most_small_values) {
     faults.push_back({"arithmetic",

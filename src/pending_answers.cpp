@@ -19,8 +19,6 @@ constexpr std::size_t own = 6;
 constexpr double begins = 0.003;
 constexpr double ends = 0.003;
 
-std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
-
 }  // namespace
 
 PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
@@ -28,6 +26,7 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
     : trajectories_(&trajectories),
       patience_(config.patience),
       after_centre_(config.sequence_length - config.sequence_length / 2),
+      grows_(config.use == Use::close_loops),
       least_(static_cast<double>(config.min_probability)) {
   const bool used = config.decision == Decision::probability;
   const std::size_t kept = config.patience + config.sequence_length + 2;
@@ -52,13 +51,14 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
 
 void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
                              std::uint64_t newest) noexcept {
+  const PlaceOrder& order = map.order();
   evidence_.reset();
   const auto& likeliest = belief.likeliest();
   at(newest).new_place = belief.new_place();
   if (!likeliest) return;
   const std::size_t length = belief.trace(likeliest->index, trace_);
   evidence_ = likeliest->evidence;
-  ask_windows(belief, map, newest, length);
+  ask_windows(map, newest, length);
   evidence_->past = belief.remember(log_odds_now(*evidence_));
   const double odds = log_odds(*evidence_);
   // Where the trace may have begun, and ended: by what its frames said. Chances of both, frame by
@@ -67,7 +67,7 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
   // A trace that was sure of its oldest frame did not enter later.
   const Waiting& oldest = at(newest - (length - 1));
   const bool known = oldest.believed && oldest.frame == newest - (length - 1) && oldest.asked > 1 &&
-                     distance(oldest.row, trace_[length - 1].row) <= own;
+                     order.apart(oldest.row, trace_[length - 1].row) <= own;
   const double off = known ? 1.0 - logistic(oldest.odds) * oldest.on : 1.0;
   const double usual = exponential(-belief.usual_gain());
   double said = 0.0;
@@ -92,7 +92,7 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
     later += weights_[back].entered;
     gone = std::max(0.0, gone - weights_[back].gone);
     if (!waiting.waits || waiting.frame != frame) continue;
-    const bool same = waiting.believed && distance(waiting.row, trace_[back].row) <= own;
+    const bool same = waiting.believed && order.apart(waiting.row, trace_[back].row) <= own;
     if (!same && waiting.believed) {
       // One of the two is wrong.
       const double now = logistic(odds) * on;
@@ -113,8 +113,8 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
 }
 
 /// What sequence search says of the frames along the trace.
-void PendingAnswers::ask_windows(const PlaceBelief& belief, const PlaceMap& map,
-                                 std::uint64_t newest, std::size_t length) noexcept {
+void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
+                                 std::size_t length) noexcept {
   constexpr std::size_t windows = 10;
   std::size_t asked = 0;
   for (std::size_t back = after_centre_; back < length && asked < windows; ++back) {
@@ -124,7 +124,7 @@ void PendingAnswers::ask_windows(const PlaceBelief& belief, const PlaceMap& map,
     double here = 0.0;
     double elsewhere = 0.0;
     for (const FoundLine& line : lines_of(frame).first(at(frame).lines)) {
-      const bool same = line.row < map.size() && belief.same_place(map, line.row, trace_[back].row);
+      const bool same = line.row < map.size() && map.same_place(line.row, trace_[back].row);
       double& lowest = same ? here : elsewhere;
       if (lowest == 0.0) lowest = line.score;
     }
@@ -137,21 +137,19 @@ void PendingAnswers::ask_windows(const PlaceBelief& belief, const PlaceMap& map,
   }
 }
 
-void PendingAnswers::answer(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-                            std::uint64_t oldest) noexcept {
+void PendingAnswers::answer(PlaceMap& map, std::uint64_t newest, std::uint64_t oldest) noexcept {
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
     const bool sure = waiting.believed && waiting.lag >= after_centre_ + after_centre_ / 2 &&
                       logistic(waiting.odds) * waiting.on >= least_;
-    if (late || sure || !waiting.readable) give(belief, map, newest, waiting);
+    if (late || sure || !waiting.readable) give(map, newest, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
 }
 
-void PendingAnswers::give(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-                          Waiting& waiting) noexcept {
+void PendingAnswers::give(PlaceMap& map, std::uint64_t newest, Waiting& waiting) noexcept {
   waiting.waits = false;
   Answer& answer = answers_[given_++];
   answer = {waiting.frame, Gate::frame_error, 0.0F, std::nullopt};
@@ -163,38 +161,41 @@ void PendingAnswers::give(PlaceBelief& belief, const PlaceMap& map, std::uint64_
   const bool left = waiting.lag < std::min<std::uint64_t>(after_centre_, newest - waiting.frame);
   answer.probability =
       static_cast<float>(logistic(waiting.odds) * waiting.on * (left ? early : 1.0));
-  answer.match = match(belief, map, waiting.frame);
+  answer.match = match(map, waiting.frame);
   const bool sure = static_cast<double>(answer.probability) >= least_;
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
   answer.gate = sure ? Gate::match : is_new ? Gate::new_place : Gate::unsure;
   // The frame is a place too, unless the map was full.
   constexpr float likely = 0.9F;
-  if (answer.probability < likely) return;
-  const std::uint64_t back = newest - waiting.frame;
-  const std::size_t row = map.order().straight() ? static_cast<std::size_t>(waiting.frame)
-                                                 : map.size() - 1 - static_cast<std::size_t>(back);
-  if (row < map.size() && waiting.row < map.size()) belief.link(map, row, waiting.row);
+  if (!grows_ || answer.probability < likely || waiting.row >= map.size()) return;
+  const std::size_t row = map.order().row_of_frame(waiting.frame);
+  if (row < map.size() && map.order().frame(row) == waiting.frame) map.link(row, waiting.row);
 }
 
-std::optional<FoundLine> PendingAnswers::line_near(const PlaceBelief& belief, const PlaceMap& map,
+std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept {
   const Waiting& waiting = at(frame);
   if (waiting.frame != frame || !waiting.believed) return std::nullopt;
   for (const FoundLine& line : lines_of(frame).first(waiting.lines)) {
     constexpr std::size_t beside = 10;
-    const std::size_t off = distance(line.row, waiting.row);
+    const std::size_t off = map.order().apart(line.row, waiting.row);
     const bool other_visit =
-        off > beside && line.row < map.size() && belief.same_place(map, line.row, waiting.row);
+        off > beside && line.row < map.size() && map.same_place(line.row, waiting.row);
     if (off <= own || other_visit) return line;
   }
   return std::nullopt;
 }
 
-Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
-                            std::uint64_t frame) noexcept {
-  const auto number = [&](std::size_t row) {
-    return static_cast<std::size_t>(map.order().number(std::min(row, map.size() - 1)));
+Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
+  const PlaceOrder& order = map.order();
+  // A row that is `by` rows from another, or as far that way as its session goes.
+  const auto number = [&](std::size_t row, std::int64_t by) {
+    const CandidateRun session = order.around(std::min(row, map.size() - 1));
+    const std::int64_t there = std::clamp(static_cast<std::int64_t>(row) + by,
+                                          static_cast<std::int64_t>(session.first),
+                                          static_cast<std::int64_t>(session.last) - 1);
+    return static_cast<std::size_t>(order.number(static_cast<std::size_t>(there)));
   };
   // The line through the frame itself, or the nearest one that reaches it.
   for (std::uint64_t off = 0; off <= trajectories_->window() / 2; ++off) {
@@ -202,21 +203,20 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
       if (!after && (off == 0 || frame < off)) continue;
       const std::uint64_t other = after ? frame + off : frame - off;
       if (other >= end_ || (after && off > trajectories_->centre())) continue;
-      const auto line = line_near(belief, map, other);
+      const auto line = line_near(map, other);
       if (!line) continue;
       const auto offsets = trajectories_->offsets(line->line);
       // From there on as the trace goes.
-      const std::int64_t here = static_cast<std::int64_t>(line->row) +
-                                static_cast<std::int64_t>(at(frame).row) -
-                                static_cast<std::int64_t>(at(other).row);
-      const auto row = static_cast<std::size_t>(std::max<std::int64_t>(here, 0));
-      return {number(row), static_cast<float>(line->score), static_cast<float>(line->uniqueness),
-              trajectories_->velocity(line->line),
-              number(line->row + static_cast<std::size_t>(offsets.back()))};
+      const std::int64_t on =
+          static_cast<std::int64_t>(at(frame).row) - static_cast<std::int64_t>(at(other).row);
+      return {number(line->row, on), static_cast<float>(line->score),
+              static_cast<float>(line->uniqueness), trajectories_->velocity(line->line),
+              number(line->row, offsets.back())};
     }
   }
   const std::size_t row = at(frame).row;
-  return {number(row), undefined_float, undefined_float, undefined, number(row + after_centre_)};
+  return {number(row, 0), undefined_float, undefined_float, undefined,
+          number(row, static_cast<std::int64_t>(after_centre_))};
 }
 
 void PendingAnswers::removed(std::size_t row) noexcept {

@@ -38,8 +38,6 @@ constexpr double close_bits = DescriptorRows::close_words * 64.0;
 
 constexpr std::uint32_t no_parent = PlaceBelief::most;
 
-std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
-
 }  // namespace
 
 double log_odds_now(const Evidence& e) noexcept {
@@ -56,14 +54,12 @@ double PlaceBelief::Level::lead(double value) const noexcept {
   return (value - mean) / std::sqrt(variance + 0.25);
 }
 
-PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config, std::size_t places)
+PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
     : depth_(config.patience + 1) {
   const bool used = config.decision == Decision::probability;
-  const bool grows = config.use == Use::close_loops;
   rows_ = arena.take<Hypothesis>("hypotheses", used ? most : 0);
   moved_ = arena.take<Hypothesis>("hypotheses that have moved", used ? 4 * most : 0);
   traces_ = arena.take<Traced>("traces of hypotheses", used ? depth_ * most : 0);
-  places_ = arena.take<std::uint64_t>("visits of one place", used && grows ? places : 0);
   histogram_ = arena.take<std::uint32_t>("histogram of a scan",
                                          used ? static_cast<std::size_t>(scanned_bits) + 1 : 0);
 }
@@ -77,7 +73,7 @@ std::size_t PlaceBelief::observe(const View& view) noexcept {
     return sketches_;
   }
   const double w = scene->novelty;
-  move(w > least_novelty ? moving : standing);
+  move(view.map->order(), w > least_novelty ? moving : standing);
   double on = 0.0;
   for (std::size_t i = 0; i < moved_count_; ++i) on += moved_[i].mass;
   const double born = coming * std::min(1.0, 4.0 * w) * new_place_;
@@ -157,8 +153,9 @@ double PlaceBelief::novelty(const View& view, double mean) noexcept {
   return exponential(power * logarithm(change)) * gone;
 }
 
-/// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
-void PlaceBelief::move(std::span<const double> kernel) noexcept {
+/// Moves the belief on by a frame: each row now comes from its likeliest predecessor. What would
+/// leave its session is gone.
+void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) noexcept {
   moved_count_ = 0;
   std::array<std::size_t, 3> next{};
   while (true) {
@@ -170,17 +167,21 @@ void PlaceBelief::move(std::span<const double> kernel) noexcept {
     Hypothesis moved;
     double best = 0.0;
     double mass = 0.0;
+    bool reached = false;
     for (std::size_t by = 0; by < kernel.size(); ++by) {
       if (next[by] == count_ || rows_[next[by]].row + by != row) continue;
-      const double part = kernel[by] * rows_[next[by]].mass;
+      const std::size_t from = next[by]++;
+      if (order.apart(rows_[from].row, row) != by) continue;
+      reached = true;
+      const double part = kernel[by] * rows_[from].mass;
       if (part > best) {
         best = part;
-        moved = rows_[next[by]];
-        moved.parent = static_cast<std::uint32_t>(next[by]);
+        moved = rows_[from];
+        moved.parent = static_cast<std::uint32_t>(from);
       }
       mass += part;
-      ++next[by];
     }
+    if (!reached) continue;
     moved.row = row;
     moved.mass = mass;
     moved_[moved_count_++] = moved;
@@ -241,13 +242,14 @@ void PlaceBelief::weigh(const View& view, const Scene& scene) noexcept {
     const double here = share(view, view.newest, at.row);
     double contrast = 0.0;
     if (view.newest >= view.oldest + apart) {
+      const CandidateRun session = view.map->order().around(at.row);
       double around = 2.0 * share(view, view.newest - apart, at.row);
       double weight = 2.0;
-      if (at.row >= apart) {
+      if (at.row >= session.first + apart) {
         around += share(view, view.newest, at.row - apart);
         weight += 1.0;
       }
-      if (at.row + apart < view.rows) {
+      if (at.row + apart < std::min(view.rows, session.last)) {
         around += share(view, view.newest, at.row + apart);
         weight += 1.0;
       }
@@ -261,7 +263,7 @@ void PlaceBelief::weigh(const View& view, const Scene& scene) noexcept {
     at.contrast = decay * at.contrast + (1.0 - decay) * contrast;
     at.age += w;
   }
-  sharpen(scene, std::span(gains).first(count_));
+  sharpen(view.map->order(), scene, std::span(gains).first(count_));
   double sum = new_place_;
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
@@ -272,7 +274,8 @@ void PlaceBelief::weigh(const View& view, const Scene& scene) noexcept {
 
 /// Where the scene hardly changes, rows side by side cannot be told apart by single frames; their
 /// sum stays.
-void PlaceBelief::sharpen(const Scene& scene, std::span<const double> gains) noexcept {
+void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
+                          std::span<const double> gains) noexcept {
   constexpr std::size_t near = 5;
   std::array<double, most> sharp{};
   const double weight = 0.2 * (1.0 - scene.novelty);
@@ -284,8 +287,9 @@ void PlaceBelief::sharpen(const Scene& scene, std::span<const double> gains) noe
   for (std::size_t i = 0; i < count_; ++i) {
     double before = 0.0;
     double after = 0.0;
-    while (rows_[first].row + near < rows_[i].row) ++first;
-    for (std::size_t j = first; j < count_ && rows_[j].row <= rows_[i].row + near; ++j) {
+    while (order.apart(rows_[first].row, rows_[i].row) > near) ++first;
+    for (std::size_t j = first; j < count_ && order.apart(rows_[j].row, rows_[i].row) <= near;
+         ++j) {
       before += rows_[j].mass;
       after += sharp[j];
     }
@@ -301,7 +305,7 @@ void PlaceBelief::judge(const View& view, const Scene& scene) noexcept {
   double place = 0.0;
   double wrong = -2.0;
   for (const Hypothesis& other : rows) {
-    if (same_place(*view.map, other.row, top->row)) {
+    if (view.map->same_place(other.row, top->row)) {
       place += other.mass;
     } else {
       wrong = std::max(wrong, other.gain);
@@ -358,11 +362,15 @@ std::size_t PlaceBelief::trace(std::size_t index, std::span<Step> out) const noe
   return back;
 }
 
-void PlaceBelief::pass(std::uint64_t frames, std::size_t rows) noexcept {
+void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept {
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    for (std::size_t i = 0; i < count_; ++i) {
-      rows_[i].row += rows;
-      rows_[i].parent = static_cast<std::uint32_t>(i);
+    const std::size_t before = std::exchange(count_, 0);
+    for (std::size_t i = 0; i < before; ++i) {
+      const std::size_t row = rows_[i].row;
+      if (order.apart(row, row + rows) != rows) continue;
+      Hypothesis& at = rows_[count_++] = rows_[i];
+      at.row = row + rows;
+      at.parent = static_cast<std::uint32_t>(i);
     }
     const std::array<double, most> gains{};
     write_trace(std::span(gains).first(count_));
@@ -376,7 +384,6 @@ void PlaceBelief::removed(std::size_t row) noexcept {
   for (Traced& at : traces_) {
     if (at.row > row) --at.row;
   }
-  if (last_linked_ > row) --last_linked_;
 }
 
 void PlaceBelief::restart() noexcept {
@@ -384,34 +391,6 @@ void PlaceBelief::restart() noexcept {
   seen_ = 0;
   new_place_ = 1.0;
   likeliest_.reset();
-}
-
-void PlaceBelief::added(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept {
-  if (!places_.empty()) places_[slot] = map.order().number(row);
-}
-
-void PlaceBelief::link(const PlaceMap& map, std::size_t row, std::size_t earlier) noexcept {
-  if (places_.empty()) return;
-  const auto place = [&](std::size_t r) -> std::uint64_t& { return places_[map.order().slot(r)]; };
-  place(row) = place(earlier);
-  const std::size_t from = std::exchange(last_linked_, row);
-  if (from >= row || row - from > most_between) return;
-  const std::uint64_t first = place(from);
-  const std::uint64_t rows = row - from;
-  if (place(row) < first || place(row) - first > 2 * rows) return;
-  const std::uint64_t places = place(row) - first;
-  for (std::uint64_t i = 1; i < rows; ++i) {
-    place(from + static_cast<std::size_t>(i)) = first + places * i / rows;
-  }
-}
-
-bool PlaceBelief::same_place(const PlaceMap& map, std::size_t a, std::size_t b) const noexcept {
-  constexpr std::uint64_t beside = 10;
-  if (distance(a, b) <= beside) return true;
-  if (places_.empty()) return false;
-  const std::uint64_t first = places_[map.order().slot(a)];
-  const std::uint64_t second = places_[map.order().slot(b)];
-  return (first < second ? second - first : first - second) <= beside;
 }
 
 }  // namespace seqloop

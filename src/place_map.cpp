@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,19 @@ namespace {
 
 // Rows among which the one that is missed least goes, each time a full map thins out.
 constexpr std::size_t thinned_among = 64;
+
+// Rows so near each other are one place.
+constexpr std::uint64_t beside = 10;
+
+// Between two rows that are linked, so near each other, all are.
+constexpr std::size_t most_between = 40;
+
+/// Whether places are linked to those that they are visits of: a map of one session that does not
+/// change has no visits.
+bool links(const MatcherConfig& config, const Capacity& capacity) {
+  return config.decision == Decision::probability &&
+         (config.use == Use::close_loops || capacity.sessions > 1);
+}
 
 }  // namespace
 
@@ -31,16 +45,25 @@ PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaM
 PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
                    ArenaMemory&& memory)
     : memory_(std::move(memory)),
-      standardises_(config.standardisation.on && config.use == Use::localise),
+      standardises_(config.standardisation.on &&
+                    (config.use == Use::localise || capacity.sessions > 1)),
       full_map_(config.full_map),
       statistics_(arena, capacity.descriptor_size),
-      order_(arena, capacity.places),
+      order_(arena, capacity.places, capacity.sessions),
       rows_(arena, {"places", "lengths of places", "sketches of places"},
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
       standardised_(
           arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
       spacing_(arena.take<float>("spacing of places",
-                                 full_map_ == FullMap::thin ? capacity.places : 0)) {}
+                                 full_map_ == FullMap::thin ? capacity.places : 0)),
+      first_visits_(arena.take<std::uint64_t>("visits of one place",
+                                              links(config, capacity) ? capacity.places : 0)) {}
+
+bool PlaceMap::begin_session() noexcept {
+  if (!order_.begin_session()) return false;
+  learning_ = false;
+  return true;
+}
 
 bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
   return descriptor.size() == descriptor_size() &&
@@ -48,7 +71,9 @@ bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
 }
 
 bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
-  if (!standardises_ || size() != 0 || !fits(descriptor)) return false;
+  const CandidateRun newest = order_.session(order_.sessions() - 1);
+  if (!standardises_ || newest.first != newest.last || !fits(descriptor)) return false;
+  if (!std::exchange(learning_, true)) statistics_.forget();
   statistics_.observe(descriptor);
   return true;
 }
@@ -59,29 +84,93 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
     statistics_.standardise(descriptor, standardised_);
     descriptor = standardised_;
   }
-  rows_.store(order_.append(), descriptor);
+  const std::size_t first = order_.session(order_.sessions() - 1).first;
+  const std::uint64_t frame = first == size() ? 0 : order_.frame(size() - 1) + 1;
+  rows_.store(append(frame, order_.next_number()), descriptor);
+  space(size() - 1);
   return true;
 }
 
+bool PlaceMap::add_saved(const Saved& place) noexcept {
+  const std::size_t first = order_.session(order_.sessions() - 1).first;
+  const bool follows =
+      place.number >= order_.next_number() &&
+      (first == size() || place.frame > order_.frame(size() - 1));
+  // Nothing has gone yet, so that the next slot is the next row.
+  if (size() == capacity() || !order_.straight() || !follows ||
+      !rows_.load(size(), place.descriptor)) {
+    return false;
+  }
+  static_cast<void>(append(place.frame, place.number));
+  space(size() - 1);
+  return true;
+}
+
+bool PlaceMap::set_statistics(std::span<const double> mean, std::span<const double> variance,
+                              std::uint64_t frames) noexcept {
+  if (!standardises_ || frames == 0) return false;
+  return statistics_.restore(mean, variance, frames);
+}
+
+/// Makes the newest row. @return its slot
+std::size_t PlaceMap::append(std::uint64_t frame, std::uint64_t number) noexcept {
+  const std::size_t slot = order_.append(frame, number);
+  if (!first_visits_.empty()) first_visits_[slot] = number;
+  return slot;
+}
+
+/// Notes how far a row is from the one before it.
+void PlaceMap::space(std::size_t row) noexcept {
+  if (full_map_ != FullMap::thin) return;
+  const std::size_t slot = order_.slot(row);
+  const bool begins = row == order_.around(row).first;
+  spacing_[slot] = begins ? std::numeric_limits<float>::infinity()
+                          : static_cast<float>(rows_.between(slot, order_.slot(row - 1)));
+}
+
+void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
+  if (first_visits_.empty()) return;
+  const auto first_visit = [&](std::size_t r) -> std::uint64_t& {
+    return first_visits_[order_.slot(r)];
+  };
+  first_visit(row) = first_visit(earlier);
+  const std::size_t from = std::exchange(last_linked_, row);
+  if (from >= row || order_.apart(from, row) > most_between) return;
+  const std::uint64_t first = first_visit(from);
+  const std::uint64_t last = first_visit(row);
+  const std::uint64_t rows = row - from;
+  if (last < first || last - first > 2 * rows ||
+      order_.session_of_number(first) != order_.session_of_number(last)) {
+    return;
+  }
+  for (std::uint64_t i = 1; i < rows; ++i) {
+    first_visit(from + static_cast<std::size_t>(i)) = first + (last - first) * i / rows;
+  }
+}
+
+bool PlaceMap::same_place(std::size_t a, std::size_t b) const noexcept {
+  if (order_.apart(a, b) <= beside) return true;
+  if (first_visits_.empty()) return false;
+  const std::uint64_t first = first_visit(a);
+  const std::uint64_t second = first_visit(b);
+  return (first < second ? second - first : first - second) <= beside &&
+         order_.session_of_number(first) == order_.session_of_number(second);
+}
+
 PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
-                               std::size_t keep) noexcept {
+                               std::uint64_t frame, std::size_t keep) noexcept {
   Taken taken;
   if (size() == capacity()) {
     taken.removed = row_to_go(keep);
     if (!taken.removed) return taken;
     order_.remove(*taken.removed);
+    if (last_linked_ > *taken.removed) --last_linked_;
     // The row behind the gap has another one before it now.
-    const std::size_t behind = *taken.removed;
-    if (full_map_ == FullMap::thin && behind > 0 && behind < size()) {
-      spacing_[order_.slot(behind)] =
-          static_cast<float>(rows_.between(order_.slot(behind), order_.slot(behind - 1)));
-    }
+    if (*taken.removed < size()) space(*taken.removed);
   }
-  const std::size_t slot = order_.append();
+  const std::size_t slot = append(frame, order_.next_number());
   rows_.copy(slot, queries, query);
-  if (full_map_ == FullMap::thin && size() > 1) {
-    spacing_[slot] = static_cast<float>(rows_.between(slot, order_.slot(size() - 2)));
-  }
+  space(size() - 1);
   taken.slot = slot;
   return taken;
 }
@@ -89,7 +178,8 @@ PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
 std::optional<std::size_t> PlaceMap::row_to_go(std::size_t keep) noexcept {
   if (full_map_ == FullMap::refuse || size() <= keep) return std::nullopt;
   if (full_map_ == FullMap::forget_oldest) return 0;
-  // The first and the last row of what may go have no two neighbours.
+  // The first and the last row of what may go have no two neighbours. Nor have those of a session:
+  // one of them goes only where there is no other.
   const std::size_t last = size() - std::max<std::size_t>(keep, 1);
   if (hand_ + 1 >= last) hand_ = 0;
   const std::size_t end = std::min(hand_ + thinned_among, last - 1);

@@ -25,14 +25,14 @@ RunnerUpHistory::RunnerUpHistory(Arena& arena, const MatcherConfig& config)
 }
 
 std::optional<double> RunnerUpHistory::lowest(std::size_t best, std::size_t half_rwindow,
-                                              std::size_t rows) const noexcept {
+                                              std::size_t rows, CandidateRun among) const noexcept {
   const std::size_t other_scans = (std::max<std::size_t>(rows, 1) - 1) / rows_a_scan_;
   const std::size_t frames = std::min(rounds * other_scans, seen_.size() / rows_a_frame);
   std::optional<double> lowest;
   const auto held = static_cast<std::size_t>(std::min<std::uint64_t>(remembered_, seen_.size()));
   for (const Seen& seen : seen_.first(held)) {
     const std::uint64_t age = now_ - seen.frame;
-    if (age > frames) continue;
+    if (age > frames || seen.row.row < among.first || seen.row.row >= among.last) continue;
     // It may have moved a row a frame, or none, or two.
     const std::uint64_t row = seen.row.row + age;
     const std::uint64_t near = half_rwindow + age;

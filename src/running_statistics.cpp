@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "seqloop/detail/lane_sums.hpp"
 #include "seqloop/difference.hpp"
@@ -80,6 +81,22 @@ void RunningStatistics::start_from(const RunningStatistics& other, std::size_t f
   std::ranges::copy(other.variance_, variance_.begin());
   sum_up();
   frames_ = std::min(frames, other.frames_);
+}
+
+bool RunningStatistics::restore(std::span<const double> mean, std::span<const double> variance,
+                                std::uint64_t frames) noexcept {
+  const auto sound = [](double value) { return std::isfinite(value); };
+  if (mean.size() != mean_.size() || variance.size() != variance_.size() ||
+      !std::ranges::all_of(mean, sound) ||
+      !std::ranges::all_of(variance, [&](double v) { return sound(v) && v >= 0.0; })) {
+    return false;
+  }
+  std::ranges::copy(mean, mean_.begin());
+  std::ranges::copy(variance, variance_.begin());
+  sum_up();
+  frames_ = static_cast<std::size_t>(std::min<std::uint64_t>(
+      frames, std::numeric_limits<std::size_t>::max()));
+  return true;
 }
 
 bool RunningStatistics::standardise(std::span<const float> descriptor,

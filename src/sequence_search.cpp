@@ -111,15 +111,22 @@ std::size_t SequenceSearch::score(const DifferenceSlices& slices, const PlaceOrd
                                   std::uint64_t oldest, CandidateRun run,
                                   std::size_t rows) noexcept {
   const double scale = 1.0 / (slices.unit() * static_cast<double>(trajectories_->window()));
-  return slices.whole()
-             ? score_run(slices, order, oldest, run, rows, scale, whole_columns_, whole_sums_,
-                         whole_lowest_)
-             : score_run(slices, order, oldest, run, rows, scale, columns_, sums_, lowest_);
+  std::size_t line_sums = 0;
+  order.in_sessions(run, [&](CandidateRun part) {
+    CandidateRun session = order.around(part.first);
+    session.last = std::min(session.last, rows);
+    line_sums += slices.whole()
+                     ? score_run(slices, order, oldest, part, session, scale, whole_columns_,
+                                 whole_sums_, whole_lowest_)
+                     : score_run(slices, order, oldest, part, session, scale, columns_, sums_,
+                                 lowest_);
+  });
+  return line_sums;
 }
 
 template <class Value, class Sum>
 std::size_t SequenceSearch::score_run(const DifferenceSlices& slices, const PlaceOrder& order,
-                                      std::uint64_t oldest, CandidateRun run, std::size_t rows,
+                                      std::uint64_t oldest, CandidateRun run, CandidateRun session,
                                       double scale, Columns<Value>& columns, std::span<Sum> sums,
                                       std::span<Sum> lowest) noexcept {
   for (std::size_t i = 0; i < trajectories_->window(); ++i) {
@@ -129,13 +136,13 @@ std::size_t SequenceSearch::score_run(const DifferenceSlices& slices, const Plac
   for (std::size_t first = run.first; first < run.last; first += block_rows) {
     const CandidateRun block{first, std::min(first + block_rows, run.last)};
     add_up(order, block, columns);
-    line_sums += score_block<Sum>(block, rows, scale, sums, lowest);
+    line_sums += score_block<Sum>(block, session, scale, sums, lowest);
   }
   return line_sums;
 }
 
 template <class Sum>
-std::size_t SequenceSearch::score_block(CandidateRun block, std::size_t rows, double scale,
+std::size_t SequenceSearch::score_block(CandidateRun block, CandidateRun session, double scale,
                                         std::span<const Sum> sums, std::span<Sum> lowest) noexcept {
   std::ranges::fill(lowest, std::numeric_limits<Sum>::max());
   const std::size_t size = block.last - block.first;
@@ -144,7 +151,8 @@ std::size_t SequenceSearch::score_block(CandidateRun block, std::size_t rows, do
   const auto furthest_above =
       static_cast<std::size_t>(trajectories_->highest(trajectories_->window() - 1));
   std::size_t line_sums = 0;
-  if (block.first >= furthest_below && block.last + furthest_above <= rows) {
+  if (block.first >= session.first + furthest_below &&
+      block.last + furthest_above <= session.last) {
     lowest_of(sums, {0, count}, {0, std::is_integral_v<Sum> ? whole_vectors(size) : size}, lowest);
     line_sums = count * size;
   } else {
@@ -152,9 +160,9 @@ std::size_t SequenceSearch::score_block(CandidateRun block, std::size_t rows, do
       const std::span<const std::int32_t> offsets = trajectories_->offsets(line);
       const auto below = static_cast<std::size_t>(-offsets.front());
       const auto above = static_cast<std::size_t>(offsets.back());
-      if (rows <= above) continue;
-      const std::size_t first = std::max(block.first, below);
-      const std::size_t last = std::min(block.last, rows - above);
+      if (session.last <= above) continue;
+      const std::size_t first = std::max(block.first, session.first + below);
+      const std::size_t last = std::min(block.last, session.last - above);
       if (first >= last) continue;
       lowest_of(sums, {line, line + 1}, {first - block.first, last - block.first}, lowest);
       line_sums += last - first;

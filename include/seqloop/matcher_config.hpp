@@ -29,10 +29,11 @@ enum class Candidates : std::uint8_t {
   adaptive  ///< O-SeqCNNSLAM, Algorithm 5: the same, K adapted online
 };
 
-/// What the map is.
+/// Whether the drive becomes part of the map. Either way the map may hold sessions of earlier
+/// drives, all of whose places are candidates.
 enum class Use : std::uint8_t {
-  localise,    ///< an earlier drive that does not change
-  close_loops  ///< the drive itself, without its last `exclude` frames
+  localise,    ///< the map does not change, and holds earlier sessions
+  close_loops  ///< the drive is added as a session; its newest `exclude` frames are no candidates
 };
 
 /// What decides whether a frame's best row is a place that the robot has been to.
@@ -122,6 +123,7 @@ struct MatcherConfig {
 struct Capacity {
   std::size_t places = 0;           ///< rows of the map; 1 .. 2^32
   std::size_t descriptor_size = 0;  ///< values in a descriptor, D; 1 .. 2^22
+  std::size_t sessions = 1;         ///< of the map, the running one too; 1 .. 2^32
 };
 
 /// Whether a frame has candidate ranges and a part of the map to scan, and never all rows.

@@ -15,8 +15,8 @@
 
 namespace seqloop {
 
-/// The places of a drive, in the order in which they were seen: R in the paper. Room for all of
-/// them is taken at construction.
+/// The places of one drive or several, in the order in which they were seen: R in the paper. The
+/// places of a drive are a session. Room for all of them is taken at construction.
 class PlaceMap {
  public:
   /// Bytes of every buffer. Errors: SetupError, all faults at once.
@@ -32,19 +32,48 @@ class PlaceMap {
   /// Errors: SetupError, all faults at once.
   PlaceMap(const MatcherConfig& config, const Capacity& capacity, std::span<std::byte> memory = {});
 
-  /// Takes a place into the statistics by which all of them are standardised. A map to localise in
-  /// is shown its whole drive this way first, where the configuration standardises, then `add`s it.
-  /// @return false when there are places already, or the descriptor is of another size or not
+  /// Places that are added from here on are of another session: no line runs from one session into
+  /// another. The first need not be begun. A detector that adds its drive begins one for it.
+  /// @return false when there is no room for one more (`Capacity::sessions`). Allocates: never.
+  [[nodiscard]] bool begin_session() noexcept;
+
+  /// Whether another session can be begun.
+  [[nodiscard]] bool has_room_for_session() const noexcept { return order_.has_room_for_session(); }
+
+  /// Takes a place into the statistics by which all of its session are standardised. A drive to
+  /// localise in is shown to the map as a whole this way first, where the configuration
+  /// standardises, then `add`ed.
+  /// @return false when the session has places already, or the descriptor is of another size or not
   ///   finite, or nothing is to be standardised: then nothing has changed
   /// Work: D. Allocates: never.
   [[nodiscard]] bool learn(std::span<const float> descriptor) noexcept;
 
-  /// Appends a place; standardised, if the map has learnt.
+  /// Appends a place; standardised, if the session has learnt.
   /// @param descriptor [D]; without NaN or infinity
   /// @return false when the map is full, or the descriptor is of another size or not finite: then
   ///   nothing has changed
   /// Work: 5 D. Allocates: never.
   [[nodiscard]] bool add(std::span<const float> descriptor) noexcept;
+
+  /// A place as it was saved.
+  struct Saved {
+    std::uint64_t number = 0;                 ///< above that of the place before it
+    std::uint64_t frame = 0;                  ///< of its session, above that of the place before it
+    std::span<const std::byte> descriptor{};  ///< as `rows().save` gave it
+  };
+
+  /// Appends a place that was saved.
+  /// @return false when the map is full, or it is none of a map of this form: then nothing has
+  ///   changed
+  /// Work: D and the sketch. Allocates: never.
+  [[nodiscard]] bool add_saved(const Saved& place) noexcept;
+
+  /// Takes over the statistics of the newest session: a new drive starts from them.
+  /// @param mean, variance [D] finite, variances from 0   @param frames 1 or more
+  /// @return false when they are not like that, or nothing is to be standardised: then nothing has
+  ///   changed
+  [[nodiscard]] bool set_statistics(std::span<const double> mean, std::span<const double> variance,
+                                    std::uint64_t frames) noexcept;
 
   /// What `take` did to the rows.
   struct Taken {
@@ -53,10 +82,26 @@ class PlaceMap {
   };
 
   /// Appends what a detector compares its frames by; a full map does as `FullMap` says.
-  /// @param keep newest rows that do not go
+  /// @param frame of the session
+  /// @param keep  newest rows that do not go
   /// Work: a copy; where places go, order is kept by moving 2 N bytes at most, and `thin` compares
   /// two descriptors. Allocates: never.
-  Taken take(const DescriptorRows& queries, std::size_t query, std::size_t keep) noexcept;
+  Taken take(const DescriptorRows& queries, std::size_t query, std::uint64_t frame,
+             std::size_t keep) noexcept;
+
+  /// Two rows are visits of one place. Rows between this one and the last that was linked are too,
+  /// where both lie close together. A detector that decides by probability links what it finds;
+  /// what it found may be linked again, in the same order, in a map that was saved.
+  /// Work: as many rows as lie between, 40 at most. Allocates: never.
+  void link(std::size_t row, std::size_t earlier) noexcept;
+
+  /// The number of the first place that this one is a visit of; its own where it was not linked.
+  [[nodiscard]] std::uint64_t first_visit(std::size_t row) const noexcept {
+    return first_visits_.empty() ? order_.number(row) : first_visits_[order_.slot(row)];
+  }
+
+  /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
+  [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }  // N
   [[nodiscard]] std::size_t capacity() const noexcept { return order_.capacity(); }
@@ -70,7 +115,8 @@ class PlaceMap {
 
   [[nodiscard]] FullMap full_map() const noexcept { return full_map_; }
 
-  /// Statistics of the drive that made the map; `frames() == 0` unless it has learnt.
+  /// Statistics of the newest session that has any: a drive starts from them. `frames() == 0` where
+  /// nothing was learnt.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -80,16 +126,22 @@ class PlaceMap {
 
   [[nodiscard]] bool fits(std::span<const float> descriptor) const noexcept;
   [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
+  [[nodiscard]] std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
+  void space(std::size_t row) noexcept;
 
   ArenaMemory memory_;
   bool standardises_;
   FullMap full_map_;
+  bool learning_ = false;  // the newest session, which has no place yet
   RunningStatistics statistics_;
   PlaceOrder order_;
   DescriptorRows rows_;
   std::span<float> standardised_;  // [D]
   std::size_t hand_ = 0;           // thinning goes round the rows from here
-  std::span<float> spacing_;       // [capacity] by slot: difference to the row before; for thinning
+  // [capacity] by slot, for thinning: difference to the row before, infinite to another session's
+  std::span<float> spacing_;
+  std::span<std::uint64_t> first_visits_;  // [capacity] by slot
+  std::size_t last_linked_ = 0;            // row
 };
 
 }  // namespace seqloop

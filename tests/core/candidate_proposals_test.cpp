@@ -94,7 +94,8 @@ TEST(CandidateProposals, LookAtEveryRowWhilePlacesGo) {
       CandidateProposals proposals(memory.arena, config, places);
       const auto take = [&](std::size_t frame) {
         queries.push(drive[frame]);
-        const auto taken = map.take(queries.rows(), queries.row_of(queries.newest()), 1);
+        const auto taken =
+            map.take(queries.rows(), queries.row_of(queries.newest()), queries.newest(), 1);
         if (taken.removed) proposals.removed(*taken.removed);
       };
       std::size_t frame = 0;
@@ -139,7 +140,7 @@ TEST(CandidateProposals, MoveWithWhatIsRemovedAndWithWhatIsSkipped) {
   ASSERT_TRUE(proposed(proposals, 40));
   proposals.removed(99);
   for (int place = 0; place < 10; ++place) proposals.removed(0);
-  proposals.skip(9);
+  proposals.skip(map.order(), 9);
   // 40 less 10 that went, 9 frames and this one further on; the scanned is far from it.
   static_cast<void>(proposals.look(queries, map, 100, queries.newest(), 0));
   EXPECT_TRUE(proposed(proposals, 40));

@@ -22,9 +22,11 @@ TEST(CandidateRanges, ClipUniteAndRankAsAlgorithmFourSays) {
   config.num = 4;
   CandidateRanges ranges(memory.arena, config);
   CandidateRuns united(memory.arena, 3);
+  PlaceOrder order(memory.arena, 20, 1);
+  for (std::uint64_t frame = 0; frame < 20; ++frame) static_cast<void>(order.append(frame));
   const auto runs = [&](std::size_t rows) {
     united.clear();
-    for (const CandidateRun range : ranges.choose(rows)) united.add(range);
+    for (const CandidateRun range : ranges.choose(order, rows)) united.add(range);
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (const CandidateRun run : united.runs()) all.emplace_back(run.first, run.last);
     return all;
@@ -48,7 +50,7 @@ TEST(CandidateRanges, ClipUniteAndRankAsAlgorithmFourSays) {
   EXPECT_EQ(runs(20), (Runs{{8, 14}})) << "the row behind the one that went is counted one lower";
   ranges.removed(0);
   EXPECT_EQ(runs(20), (Runs{{7, 13}}));
-  ranges.skip(4);
+  ranges.skip(order, 4);
   EXPECT_EQ(runs(20), (Runs{{11, 17}}));
   ranges.update(scores, united.runs(), std::nullopt, 1.0);
   EXPECT_EQ(runs(20), (Runs{{0, 20}})) << "after a frame without an answer";

@@ -45,7 +45,7 @@ TEST(PlaceOrder, EqualsAListWhoeverGoes) {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
       SCOPED_TRACE("capacity " + std::to_string(capacity) + ", seed " + std::to_string(seed));
       TestArena memory;
-      PlaceOrder order(memory.arena, capacity);
+      PlaceOrder order(memory.arena, capacity, 1);
       std::vector<Place> list;
       std::mt19937 random(seed);
       // Of seed 1 the oldest always goes, of seed 2 the newest; of the others any.
@@ -60,7 +60,7 @@ TEST(PlaceOrder, EqualsAListWhoeverGoes) {
           list.erase(list.begin() + static_cast<std::ptrdiff_t>(row));
           ASSERT_NO_FATAL_FAILURE(expect_equal(order, list));
         }
-        list.push_back({order.append(), number});
+        list.push_back({order.append(number), number});
         ASSERT_NO_FATAL_FAILURE(expect_equal(order, list));
         const std::size_t first = random() % (list.size() + 1);
         ASSERT_NO_FATAL_FAILURE(expect_pieces_cover(order, first, list.size()));
@@ -72,12 +72,12 @@ TEST(PlaceOrder, EqualsAListWhoeverGoes) {
 
 TEST(PlaceOrder, IsStraightUntilAPlaceGoes) {
   TestArena memory;
-  PlaceOrder order(memory.arena, 3);
-  for (std::size_t slot = 0; slot < 3; ++slot) EXPECT_EQ(order.append(), slot);
+  PlaceOrder order(memory.arena, 3, 1);
+  for (std::size_t slot = 0; slot < 3; ++slot) EXPECT_EQ(order.append(slot), slot);
   EXPECT_TRUE(order.straight());
   EXPECT_EQ(order.remove(1), 1U);
   EXPECT_FALSE(order.straight());
-  EXPECT_EQ(order.append(), 1U) << "the room of the place that went";
+  EXPECT_EQ(order.append(3), 1U) << "the room of the place that went";
   EXPECT_EQ(order.number(2), 3U);
 }
 

@@ -18,6 +18,9 @@ MatcherConfig config(std::size_t sequence_length = 20) {
   return config;
 }
 
+// Rows of one session.
+constexpr CandidateRun any{0, 100'000};
+
 struct HistoryOf {
   explicit HistoryOf(const MatcherConfig& config) : history(memory.arena, config) {}
 
@@ -37,13 +40,13 @@ TEST(RunnerUpHistory, TheLowestOfTheFramesBeforeStands) {
   past.frame(80, 0.5);
   past.frame(120, 0.6);
   past.history.next();
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), 0.5);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), 0.5);
 }
 
 TEST(RunnerUpHistory, NoneStandsBeforeTheFirstFrame) {
   HistoryOf past(config());
   past.history.next();
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), std::nullopt);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), std::nullopt);
 }
 
 TEST(RunnerUpHistory, OneScanShowsEveryRunnerUp) {
@@ -51,9 +54,9 @@ TEST(RunnerUpHistory, OneScanShowsEveryRunnerUp) {
   past.frame(80, 0.5);
   past.history.next();
   for (const std::size_t rows : {std::size_t{0}, std::size_t{1}, scan}) {
-    EXPECT_EQ(past.history.lowest(10, half_rwindow, rows), std::nullopt) << rows;
+    EXPECT_EQ(past.history.lowest(10, half_rwindow, rows, any), std::nullopt) << rows;
   }
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, scan + 1), 0.5);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, scan + 1, any), 0.5);
 }
 
 TEST(RunnerUpHistory, StandsForFourRoundsOfTheOtherScans) {
@@ -61,10 +64,10 @@ TEST(RunnerUpHistory, StandsForFourRoundsOfTheOtherScans) {
   past.frame(80, 0.5);
   for (std::size_t age = 1; age <= 4; ++age) {
     past.history.next();
-    EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), 0.5) << age;
+    EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), 0.5) << age;
   }
   past.history.next();
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), std::nullopt);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), std::nullopt);
 }
 
 TEST(RunnerUpHistory, StandsForHalfAWindowAtMost) {
@@ -72,10 +75,10 @@ TEST(RunnerUpHistory, StandsForHalfAWindowAtMost) {
   past.frame(80, 0.5);
   for (std::size_t age = 1; age <= 10; ++age) {
     past.history.next();
-    EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan), 0.5) << age;
+    EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan, any), 0.5) << age;
   }
   past.history.next();
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan), std::nullopt);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan, any), std::nullopt);
 }
 
 TEST(RunnerUpHistory, MovesAlongAndSparesRowsThatItMayHaveReached) {
@@ -84,11 +87,11 @@ TEST(RunnerUpHistory, MovesAlongAndSparesRowsThatItMayHaveReached) {
   past.history.next();
   past.history.next();
   // Two frames on: row 52, give or take the half window and two rows.
-  EXPECT_TRUE(past.history.lowest(44, half_rwindow, two_scans));
+  EXPECT_TRUE(past.history.lowest(44, half_rwindow, two_scans, any));
   for (std::size_t best = 45; best <= 59; ++best) {
-    EXPECT_FALSE(past.history.lowest(best, half_rwindow, two_scans)) << best;
+    EXPECT_FALSE(past.history.lowest(best, half_rwindow, two_scans, any)) << best;
   }
-  EXPECT_TRUE(past.history.lowest(60, half_rwindow, two_scans));
+  EXPECT_TRUE(past.history.lowest(60, half_rwindow, two_scans, any));
 }
 
 TEST(RunnerUpHistory, FramesThatWentByUnseenCount) {
@@ -96,9 +99,9 @@ TEST(RunnerUpHistory, FramesThatWentByUnseenCount) {
   past.frame(80, 0.5);
   past.history.skip(3);
   past.history.next();
-  EXPECT_TRUE(past.history.lowest(10, half_rwindow, two_scans));
+  EXPECT_TRUE(past.history.lowest(10, half_rwindow, two_scans, any));
   past.history.skip(1);
-  EXPECT_FALSE(past.history.lowest(10, half_rwindow, two_scans));
+  EXPECT_FALSE(past.history.lowest(10, half_rwindow, two_scans, any));
 }
 
 TEST(RunnerUpHistory, ARemovedRowMovesThoseBehindIt) {
@@ -107,9 +110,9 @@ TEST(RunnerUpHistory, ARemovedRowMovesThoseBehindIt) {
   past.history.removed(50);
   past.history.removed(70);
   past.history.next();
-  EXPECT_TRUE(past.history.lowest(44, half_rwindow, two_scans)) << "still row 51";
+  EXPECT_TRUE(past.history.lowest(44, half_rwindow, two_scans, any)) << "still row 51";
   past.history.removed(20);
-  EXPECT_FALSE(past.history.lowest(44, half_rwindow, two_scans)) << "row 50";
+  EXPECT_FALSE(past.history.lowest(44, half_rwindow, two_scans, any)) << "row 50";
 }
 
 TEST(RunnerUpHistory, TheRingKeepsTwoAFrame) {
@@ -119,7 +122,7 @@ TEST(RunnerUpHistory, TheRingKeepsTwoAFrame) {
     past.frame(100, 0.6);
     past.history.remember({150, 0.7});
   }
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan), 0.6) << "0.1 was overwritten";
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, 1000 * scan, any), 0.6) << "0.1 was overwritten";
 }
 
 TEST(RunnerUpHistory, ARestartForgetsAll) {
@@ -127,7 +130,7 @@ TEST(RunnerUpHistory, ARestartForgetsAll) {
   past.frame(80, 0.5);
   past.history.restart();
   past.history.next();
-  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), std::nullopt);
+  EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), std::nullopt);
 }
 
 TEST(RunnerUpHistory, SingleFramesAndFullSearchesKeepNone) {
@@ -137,7 +140,7 @@ TEST(RunnerUpHistory, SingleFramesAndFullSearchesKeepNone) {
     HistoryOf past(each);
     past.frame(80, 0.5);
     past.history.next();
-    EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans), std::nullopt);
+    EXPECT_EQ(past.history.lowest(10, half_rwindow, two_scans, any), std::nullopt);
   }
 }
 

@@ -30,7 +30,7 @@ PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
     places.see(static_cast<double>(map.size()), 0.0F, descriptor);
   } while (map.add(descriptor) && map.size() < synthetic);
   const std::size_t half = synthetic / 2;
-  for (std::size_t from = half; map.take(map.rows(), from, 0).slot;) {
+  for (std::size_t from = half; map.take(map.rows(), from, map.size(), 0).slot;) {
     from = from + 1 < synthetic ? from + 1 : half;
   }
   return map;

@@ -55,6 +55,9 @@ class CandidateBudget {
   [[nodiscard]] std::size_t distances() const noexcept { return distances_; }
 
  private:
+  /// The same for rows of one session.
+  void add_part(const Window& window, CandidateRun range) noexcept;
+
   struct Cost {
     std::size_t rows = 0;
     std::size_t distances = 0;

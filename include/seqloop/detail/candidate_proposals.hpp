@@ -67,8 +67,8 @@ class CandidateProposals {
     return proposals_.first(count_);
   }
 
-  /// Frames went by unseen: each moves what is remembered one row further on.
-  void skip(std::uint64_t frames) noexcept;
+  /// Frames went by unseen: each moves what is remembered one row further on, within its session.
+  void skip(const PlaceOrder& order, std::uint64_t frames) noexcept;
 
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
@@ -90,7 +90,7 @@ class CandidateProposals {
   [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept {
     return behind_[line * (ds_ + 1) + back];
   }
-  void remember(Alike alike) noexcept;
+  void remember(const PlaceOrder& order, Alike alike) noexcept;
   void weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
              std::uint64_t oldest) noexcept;
   [[nodiscard]] std::size_t best_line(const QueryHistory& queries, const PlaceMap& map,

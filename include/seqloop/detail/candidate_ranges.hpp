@@ -7,6 +7,7 @@
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/candidate_runs.hpp"
+#include "seqloop/detail/place_order.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
@@ -21,13 +22,15 @@ class CandidateRanges {
   /// This frame's candidates. @param rows rows of the map that may be searched
   /// @return the best first; they may overlap; none when there are no rows, or none are
   /// known where no full search is made. Work: K. Allocates: never.
-  [[nodiscard]] std::span<const CandidateRun> choose(std::size_t rows) noexcept;
+  [[nodiscard]] std::span<const CandidateRun> choose(const PlaceOrder& order,
+                                                     std::size_t rows) noexcept;
 
   /// Whether the last choice was all rows.
   [[nodiscard]] bool full_search() const noexcept { return full_search_; }
 
-  /// [row - Num/2, row + Num/2], clipped to the rows that may be searched.
-  [[nodiscard]] CandidateRun around(std::size_t row, std::size_t rows) const noexcept;
+  /// [row - Num/2, row + Num/2], clipped to the rows of its session that may be searched.
+  [[nodiscard]] CandidateRun around(const PlaceOrder& order, std::size_t row,
+                                    std::size_t rows) const noexcept;
 
   /// K in force; 0 where all rows are always candidates.
   [[nodiscard]] std::size_t k() const noexcept { return k_; }
@@ -42,7 +45,7 @@ class CandidateRanges {
 
   /// Frames went by unseen: each moves the last frame's best rows one row further on,
   /// as they do at velocity 1. Work: K.
-  void skip(std::uint64_t frames) noexcept;
+  void skip(const PlaceOrder& order, std::uint64_t frames) noexcept;
 
   /// Forgets the last frame: the next one searches all, K starts anew.
   void restart() noexcept;

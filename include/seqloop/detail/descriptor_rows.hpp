@@ -50,6 +50,20 @@ class DescriptorRows {
   /// Takes over a row that is kept in the same form. Work: a copy.
   void copy(std::size_t row, const DescriptorRows& from, std::size_t from_row) noexcept;
 
+  /// Bytes that a row is saved in: what cannot be computed from something else.
+  [[nodiscard]] std::size_t saved_size() const noexcept;
+
+  /// Writes a row's bytes, the same on every processor: integers as in memory, floats and words the
+  /// lowest byte first.
+  /// @param out [saved_size()]. Work: a copy. Allocates: never.
+  void save(std::size_t row, std::span<std::byte> out) const noexcept;
+
+  /// Takes over a row that was saved, in the same form.
+  /// @param saved [saved_size()]
+  /// @return false when no descriptor is saved like that; then the row is undefined
+  /// Work: D, and the sketch. Allocates: never.
+  [[nodiscard]] bool load(std::size_t row, std::span<const std::byte> saved) noexcept;
+
   /// Differences of one descriptor to consecutive rows, for `float32`.
   /// @param out [count] 0 .. 2 between unit vectors. Work: count distances. Allocates: never.
   void compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
@@ -89,6 +103,8 @@ class DescriptorRows {
   [[nodiscard]] const DescriptorForm& form() const noexcept { return form_; }
 
  private:
+  void sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept;
+  void copy_scanned(std::size_t row) noexcept;
   [[nodiscard]] std::span<const float> exact(std::size_t row) const noexcept {
     return exact_.subspan(row * stride_, stride_);
   }

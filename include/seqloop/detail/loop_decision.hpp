@@ -9,6 +9,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/candidate_proposals.hpp"
 #include "seqloop/detail/candidate_runs.hpp"
+#include "seqloop/detail/place_order.hpp"
 #include "seqloop/detail/runner_up_history.hpp"
 #include "seqloop/matcher_config.hpp"
 
@@ -18,7 +19,8 @@ namespace seqloop {
 struct BestRow {
   std::size_t row;
   double score;        ///< infinity never comes here
-  double uniqueness;   ///< score by the best score outside the row's window; NaN where not defined
+  double uniqueness;   ///< score by the best score outside the row's window, in its session; NaN
+                       ///< where not defined
   std::size_t scored;  ///< candidates that had a score
 };
 
@@ -39,8 +41,9 @@ class LoopDecision {
   /// @return the row with the lowest score, the lower row of equals; none when no row has a score
   /// Work: two passes over the candidates, one over `RunnerUpHistory`. Allocates: never.
   [[nodiscard]] std::optional<BestRow> decide(
-      std::span<const double> scores, std::span<const CandidateRun> runs, bool keep_runner_up,
-      std::span<const CandidateProposals::Proposal> proposals, std::size_t rows) noexcept;
+      const PlaceOrder& order, std::span<const double> scores, std::span<const CandidateRun> runs,
+      bool keep_runner_up, std::span<const CandidateProposals::Proposal> proposals,
+      std::size_t rows) noexcept;
 
   /// Frames went by unseen.
   void skip(std::uint64_t frames) noexcept { past_.skip(frames); }

@@ -46,10 +46,10 @@ class PendingAnswers {
   /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
 
-  /// Writes the answers that are due, in order of frame, behind those that are there.
+  /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
+  /// is a place, and is likely another one too, is linked to that.
   /// @param oldest frame that belongs together with the newest: those before it wait no longer
-  void answer(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-              std::uint64_t oldest) noexcept;
+  void answer(PlaceMap& map, std::uint64_t newest, std::uint64_t oldest) noexcept;
 
   /// Takes an answer that did not wait.
   void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
@@ -90,18 +90,16 @@ class PendingAnswers {
     return lines_.subspan(static_cast<std::size_t>(frame % waiting_.size()) * lines_kept,
                           lines_kept);
   }
-  void ask_windows(const PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-                   std::size_t length) noexcept;
-  [[nodiscard]] std::optional<FoundLine> line_near(const PlaceBelief& belief, const PlaceMap& map,
+  void ask_windows(const PlaceMap& map, std::uint64_t newest, std::size_t length) noexcept;
+  [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
-  [[nodiscard]] Match match(const PlaceBelief& belief, const PlaceMap& map,
-                            std::uint64_t frame) noexcept;
-  void give(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-            Waiting& waiting) noexcept;
+  [[nodiscard]] Match match(const PlaceMap& map, std::uint64_t frame) noexcept;
+  void give(PlaceMap& map, std::uint64_t newest, Waiting& waiting) noexcept;
 
   const Trajectories* trajectories_;
   std::size_t patience_;
   std::size_t after_centre_;
+  bool grows_;
   double least_;
   std::uint64_t first_ = 0;  // frame that may still wait
   std::uint64_t end_ = 0;    // after the newest

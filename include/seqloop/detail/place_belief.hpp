@@ -48,7 +48,7 @@ class PlaceBelief {
   static constexpr std::size_t reach = 20;
 
   /// Allocates: from the arena only.
-  PlaceBelief(Arena& arena, const MatcherConfig& config, std::size_t places);
+  PlaceBelief(Arena& arena, const MatcherConfig& config);
 
   /// What there is to see.
   struct View {
@@ -64,8 +64,8 @@ class PlaceBelief {
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
   std::size_t observe(const View& view) noexcept;
 
-  /// Frames went by unseen, and the robot moved on by so many rows.
-  void pass(std::uint64_t frames, std::size_t rows) noexcept;
+  /// Frames went by unseen, and the robot moved on by so many rows in each.
+  void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
 
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
@@ -98,18 +98,6 @@ class PlaceBelief {
 
   /// What the best wrong rows gain at a frame; 0 or more.
   [[nodiscard]] double usual_gain() const noexcept;
-
-  /// Two rows of the map are visits of one place. Rows between this one and the last that was
-  /// linked are too, where both lie close together.
-  /// Work: as many rows as lie between, `most_between` at most.
-  void link(const PlaceMap& map, std::size_t row, std::size_t earlier) noexcept;
-  static constexpr std::size_t most_between = 40;
-
-  /// Whether two rows are one place, or beside it.
-  [[nodiscard]] bool same_place(const PlaceMap& map, std::size_t a, std::size_t b) const noexcept;
-
-  /// A place has been added in this slot of the map, in place of another perhaps.
-  void added(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
 
  private:
   struct Hypothesis {
@@ -148,10 +136,11 @@ class PlaceBelief {
 
   [[nodiscard]] std::optional<Scene> look_around(const View& view) noexcept;
   [[nodiscard]] double novelty(const View& view, double mean) noexcept;
-  void move(std::span<const double> kernel) noexcept;
+  void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void give_birth(const View& view, double mass) noexcept;
   void weigh(const View& view, const Scene& scene) noexcept;
-  void sharpen(const Scene& scene, std::span<const double> gains) noexcept;
+  void sharpen(const PlaceOrder& order, const Scene& scene,
+               std::span<const double> gains) noexcept;
   void judge(const View& view, const Scene& scene) noexcept;
   void write_trace(std::span<const double> gains) noexcept;
   [[nodiscard]] double share(const View& view, std::uint64_t frame, std::size_t row) noexcept;
@@ -165,11 +154,9 @@ class PlaceBelief {
   std::size_t count_ = 0;
   std::size_t moved_count_ = 0;
   std::optional<Likeliest> likeliest_;
-  std::size_t last_linked_ = 0;         // row
   std::span<Hypothesis> rows_;          // [most] in order of row
   std::span<Hypothesis> moved_;         // [4 most]
   std::span<Traced> traces_;            // [depth, most], a ring
-  std::span<std::uint64_t> places_;     // [places] by slot: number of the place's first visit
   std::span<std::uint32_t> histogram_;  // [bits + 1] of the scan
 };
 

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_runs.hpp"
 
 namespace seqloop {
 
-/// Which slot of the memory each row of the map is in, oldest first. Rows are counted anew whenever
-/// one goes; a place keeps its slot and its number for life.
+/// Which slot of the memory each row of the map is in, oldest first, and which rows are of one
+/// session. Rows are counted anew whenever one goes; a place keeps its slot and its number for
+/// life.
 class PlaceOrder {
  public:
-  /// Allocates: from the arena only.
-  PlaceOrder(Arena& arena, std::size_t slots);
+  /// @param sessions that there is room for; 1 or more. Allocates: from the arena only.
+  PlaceOrder(Arena& arena, std::size_t slots, std::size_t sessions);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
 
-  /// Whether every row is in the slot of its own number, as until one goes.
+  /// Whether every row is in the slot that it counts, as until one goes.
   [[nodiscard]] bool straight() const noexcept { return straight_; }
 
   /// @param row 0 .. size()
@@ -27,8 +30,65 @@ class PlaceOrder {
     return straight_ ? row : slots_[at(row)];
   }
 
-  /// How many places were added before this one.
+  /// The place's number: one more than that of the place that was added before it, or as given.
   [[nodiscard]] std::uint64_t number(std::size_t row) const noexcept { return numbers_[slot(row)]; }
+
+  /// The number that the next place gets, unless one is given.
+  [[nodiscard]] std::uint64_t next_number() const noexcept { return next_; }
+
+  /// The frame of its session that the place is.
+  [[nodiscard]] std::uint64_t frame(std::size_t row) const noexcept { return frames_[slot(row)]; }
+
+  /// Rows that are appended from here on are of another session. While the newest has no row, it
+  /// is that one.
+  /// @return false when there is no room for one more. Allocates: never.
+  bool begin_session() noexcept;
+
+  [[nodiscard]] bool has_room_for_session() const noexcept {
+    return sessions_ < begins_.size() || begins_[sessions_ - 1].row == size_;
+  }
+
+  /// Sessions that have been begun, those whose rows have all gone too; 1 or more.
+  [[nodiscard]] std::size_t sessions() const noexcept { return sessions_; }
+
+  /// The rows of a session. @param session 0 .. sessions()
+  [[nodiscard]] CandidateRun session(std::size_t session) const noexcept {
+    return {begins_[session].row, session + 1 < sessions_ ? begins_[session + 1].row : size_};
+  }
+
+  /// The session that a row is of; the newest for one beyond the last. Work: log sessions.
+  [[nodiscard]] std::size_t session_of(std::size_t row) const noexcept;
+
+  /// The session that a place is of or, if it has gone, was. Work: log sessions.
+  [[nodiscard]] std::size_t session_of_number(std::uint64_t number) const noexcept;
+
+  /// The rows of the session that a row is of.
+  [[nodiscard]] CandidateRun around(std::size_t row) const noexcept {
+    return session(session_of(row));
+  }
+
+  /// Rows from one to the other; `far` between two sessions.
+  [[nodiscard]] std::size_t apart(std::size_t a, std::size_t b) const noexcept;
+  static constexpr std::size_t far = static_cast<std::size_t>(-1);
+
+  /// The row so many rows before another, or the first of its session.
+  [[nodiscard]] std::size_t before(std::size_t row, std::size_t by) const noexcept {
+    return std::max(around(row).first, row - std::min(row, by));
+  }
+
+  /// The first row of the newest session whose frame is this one or later; size() if there is none.
+  /// Work: log N.
+  [[nodiscard]] std::size_t row_of_frame(std::uint64_t frame) const noexcept;
+
+  /// Calls `work(part)` for the parts of a run that are of one session each, in rising order.
+  template <class Work>
+  void in_sessions(CandidateRun run, Work work) const noexcept {
+    while (run.first < run.last) {
+      const std::size_t end = std::min(run.last, around(run.first).last);
+      work(CandidateRun{run.first, end});
+      run.first = end;
+    }
+  }
 
   /// Calls `work(row, slot, count)` for pieces of the rows [first, last) whose slots lie side by
   /// side.
@@ -43,12 +103,17 @@ class PlaceOrder {
     }
   }
 
-  /// A new newest row. @return its slot; not when full
-  std::size_t append() noexcept;
+  /// A new newest row. @param frame of its session, above that of the row before it
+  /// @return its slot; not when full
+  std::size_t append(std::uint64_t frame) noexcept { return append(frame, next_); }
+
+  /// @param number `next_number()` or more
+  std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
 
   /// Takes a row out; a new one comes before another may go.
   /// @return its slot, free for the new one
-  /// Work: moves the shorter of the two sides, 4 bytes a row. Allocates: never.
+  /// Work: moves the shorter of the two sides, 4 bytes a row, and looks at each session.
+  /// Allocates: never.
   std::size_t remove(std::size_t row) noexcept;
 
  private:
@@ -57,13 +122,22 @@ class PlaceOrder {
     return place < slots_.size() ? place : place - slots_.size();
   }
 
+  /// Where a session begins.
+  struct Begin {
+    std::size_t row;
+    std::uint64_t number;
+  };
+
   bool straight_ = true;
   std::size_t begin_ = 0;  // where the oldest row stands in slots_
   std::size_t size_ = 0;
-  std::uint64_t added_ = 0;
+  std::uint64_t next_ = 0;
+  std::size_t sessions_ = 1;
   std::size_t free_slot_ = 0;         // of a row that went; otherwise the next unused one
   std::span<std::uint32_t> slots_;    // [capacity], a ring
   std::span<std::uint64_t> numbers_;  // [capacity], by slot
+  std::span<std::uint64_t> frames_;   // [capacity], by slot
+  std::span<Begin> begins_;           // [room for sessions]
 };
 
 }  // namespace seqloop

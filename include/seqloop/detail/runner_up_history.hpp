@@ -7,6 +7,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/candidate_runs.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
@@ -32,10 +33,11 @@ class RunnerUpHistory {
   /// @param half_rwindow rows around it that cannot be the runner-up
   /// @param rows        rows of the map that may be searched: where one scan takes them all, the
   /// frame has seen every one of them itself
+  /// @param among       rows that count: those of the best row's session
   /// @return the lowest score of the last frames' rows; none where there is none
   /// Work: ds rows at most. Allocates: never.
   [[nodiscard]] std::optional<double> lowest(std::size_t best, std::size_t half_rwindow,
-                                             std::size_t rows) const noexcept;
+                                             std::size_t rows, CandidateRun among) const noexcept;
 
   /// Remembers a row of this frame, at most two of them.
   void remember(RunnerUp row) noexcept;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -31,6 +32,16 @@ class RunningStatistics {
   /// Starts from what another drive knows, as if that had been seen for `frames` frames (no more
   /// than it really was).
   void start_from(const RunningStatistics& other, std::size_t frames) noexcept;
+
+  /// Starts from what was saved of another drive.
+  /// @param mean, variance [D]
+  /// @return false when they are of another size, not finite, or a variance is below 0: then
+  ///   nothing has changed
+  [[nodiscard]] bool restore(std::span<const double> mean, std::span<const double> variance,
+                             std::uint64_t frames) noexcept;
+
+  /// Knows nothing any more: the next frame that is observed is the first.
+  void forget() noexcept { frames_ = 0; }
 
   /// Subtracts the mean, divides by the deviation (but by no less than a tenth of the average
   /// deviation), and divides the whole by its L2 norm.

@@ -30,7 +30,8 @@ class SequenceSearch {
                  std::size_t places);
 
   /// Scores every row of a run: `score(q) = min over valid lines of the mean of D along the line`;
-  /// a line is valid when all its rows are in [0, rows). The slowest of equal lines wins.
+  /// a line is valid when all its rows are in [0, rows) and of one session. The slowest of equal
+  /// lines wins.
   /// @param slices filled where valid lines through the run can go
   /// @param oldest frame of the window's first column
   /// @param rows   rows of the map that lines may touch
@@ -64,11 +65,11 @@ class SequenceSearch {
 
   template <class Value, class Sum>
   std::size_t score_run(const DifferenceSlices& slices, const PlaceOrder& order,
-                        std::uint64_t oldest, CandidateRun run, std::size_t rows, double scale,
+                        std::uint64_t oldest, CandidateRun run, CandidateRun session, double scale,
                         Columns<Value>& columns, std::span<Sum> sums,
                         std::span<Sum> lowest) noexcept;
   template <class Sum>
-  std::size_t score_block(CandidateRun block, std::size_t rows, double scale,
+  std::size_t score_block(CandidateRun block, CandidateRun session, double scale,
                           std::span<const Sum> sums, std::span<Sum> lowest) noexcept;
   template <class Value>
   void add_up(const PlaceOrder& order, CandidateRun block, Columns<Value>& columns) noexcept;
