@@ -31,7 +31,8 @@ bool for_each_column(const CandidateBudget::Window& window, CandidateRun run, Vi
   const auto frames =
       static_cast<std::size_t>(std::min<std::uint64_t>(lines.window(), window.end - window.first));
   for (std::size_t i = lines.window(); i-- > lines.window() - frames;) {
-    const auto first = std::max(first_row + lines.lowest(i), static_cast<std::int64_t>(session.first));
+    const auto first =
+        std::max(first_row + lines.lowest(i), static_cast<std::int64_t>(session.first));
     const auto last = std::min(last_row + lines.highest(i), static_cast<std::int64_t>(end));
     if (first >= last) continue;
     if (!visit(window.end + i - lines.window(), static_cast<std::size_t>(first),

@@ -180,9 +180,8 @@ std::uint32_t CandidateProposals::differing_bits(const QueryHistory& queries, co
 void CandidateProposals::remember(const PlaceOrder& order, Alike alike) noexcept {
   const auto begin = remembered_.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>(count_);
-  const auto near = std::find_if(begin, end, [&](const Alike& other) {
-    return order.apart(other.row, alike.row) <= near_;
-  });
+  const auto near = std::find_if(
+      begin, end, [&](const Alike& other) { return order.apart(other.row, alike.row) <= near_; });
   if (near != end) {
     if (near->bits <= alike.bits) return;
     std::move(near + 1, end, near);

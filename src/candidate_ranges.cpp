@@ -61,8 +61,7 @@ CandidateRun CandidateRanges::around(const PlaceOrder& order, std::size_t row,
                                      std::size_t rows) const noexcept {
   row = std::min(row, rows - 1);
   const CandidateRun session = order.around(row);
-  return {order.before(row, half_range_),
-          std::min({row + half_range_ + 1, rows, session.last})};
+  return {order.before(row, half_range_), std::min({row + half_range_ + 1, rows, session.last})};
 }
 
 void CandidateRanges::update(std::span<const double> scores, std::span<const CandidateRun> runs,

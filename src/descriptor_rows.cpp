@@ -159,8 +159,7 @@ bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noe
       const std::span<float> values = exact_.subspan(row * stride_, form_.size);
       bool finite = true;
       for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] =
-            std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
+        values[i] = std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
         finite = finite && std::isfinite(values[i]);
       }
       if (!finite) return false;

@@ -22,10 +22,10 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
         {"map", "it has no places", "add the reference drive before localising in it"});
   }
   if (config.use == Use::close_loops && !map.has_room_for_session()) {
-    faults.push_back({"sessions",
-                      "the map has no room for one more than its " +
-                          std::to_string(map.order().sessions()),
-                      "give it room for the drive that is added, too"});
+    faults.push_back(
+        {"sessions",
+         "the map has no room for one more than its " + std::to_string(map.order().sessions()),
+         "give it room for the drive that is added, too"});
   }
   if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
       map.capacity() < least_places(config)) {
@@ -39,8 +39,7 @@ const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back({"map", "it was made for another configuration",
                       "give both the same arithmetic, difference, relocalising and full_map"});
   }
-  if (map.size() != 0 &&
-      config.standardisation.on != (map.statistics().frames() != 0)) {
+  if (map.size() != 0 && config.standardisation.on != (map.statistics().frames() != 0)) {
     faults.push_back({"map",
                       config.standardisation.on ? "its places were not standardised"
                                                 : "its places were standardised",
@@ -233,8 +232,7 @@ void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
       const double score = scores[row];
       if (score == std::numeric_limits<double>::infinity()) continue;
       const CandidateRun session = map_->order().around(row);
-      const std::size_t first =
-          std::max({run.first, session.first, row - std::min(row, near)});
+      const std::size_t first = std::max({run.first, session.first, row - std::min(row, near)});
       const std::size_t last = std::min({run.last, session.last, row + near + 1});
       bool lowest = true;
       for (std::size_t other = first; other < last; ++other) {
@@ -252,8 +250,7 @@ void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
 std::span<const Answer> Detector::finish() noexcept {
   pending_.clear();
   const std::uint64_t end = queries_.frames();
-  if (end > 0 && config_.decision == Decision::probability)
-    pending_.answer(*map_, end - 1, end);
+  if (end > 0 && config_.decision == Decision::probability) pending_.answer(*map_, end - 1, end);
   restart();
   return pending_.answers();
 }
@@ -361,7 +358,7 @@ bool Detector::take_query(std::span<const float> descriptor) noexcept {
 /// Closing loops: the newest frame becomes a place, if the map has room or makes some.
 bool Detector::become_place() noexcept {
   // Places that the newest frames still need as they were: those that are no candidates yet.
-  const std::size_t keep = config_.exclude + config_.sequence_length;
+  const std::size_t keep = std::max(keep_, config_.exclude + config_.sequence_length);
   const PlaceMap::Taken taken =
       map_->take(queries_.rows(), queries_.row_of(queries_.newest()), queries_.newest(), keep);
   if (taken.removed) {
@@ -424,7 +421,8 @@ bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcep
   // The best of both first, so that neither starves.
   for (std::size_t i = 0; i < std::max(ranges.size(), proposals.size()); ++i) {
     if (i < ranges.size()) budget_.add(window, ranges[i]);
-    if (i < proposals.size()) budget_.add(window, ranges_.around(map_->order(), proposals[i].centre, rows));
+    if (i < proposals.size())
+      budget_.add(window, ranges_.around(map_->order(), proposals[i].centre, rows));
   }
   return ranges_.full_search();
 }

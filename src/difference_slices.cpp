@@ -31,8 +31,7 @@ std::size_t margin_of(const MatcherConfig& config) {
 /// Rows and those around them that they are enhanced by, of their own sessions.
 CandidateRun with_around(const PlaceOrder& order, std::size_t first, std::size_t last,
                          std::size_t reach) {
-  return {order.before(first, reach),
-          std::min(order.around(last - 1).last, last + reach)};
+  return {order.before(first, reach), std::min(order.around(last - 1).last, last + reach)};
 }
 
 }  // namespace
@@ -73,12 +72,13 @@ std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing
   const std::size_t reach = enhance_ ? contrast_.reach() : 0;
   const CandidateRun wider = with_around(map.order(), first, last, reach);
   std::size_t computed = 0;
-  map.order().in_slots(wider.first, wider.last, [&](std::size_t, std::size_t slot, std::size_t count) {
-    computed +=
-        differences.fill(frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
-          map.rows().compare(queries_->rows(), queries_->row_of(frame), begin, out);
-        });
-  });
+  map.order().in_slots(
+      wider.first, wider.last, [&](std::size_t, std::size_t slot, std::size_t count) {
+        computed += differences.fill(
+            frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
+              map.rows().compare(queries_->rows(), queries_->row_of(frame), begin, out);
+            });
+      });
   if (enhance_) {
     enhanced.fill(frame, first, last, [&](std::size_t begin, std::span<Value> out) {
       // Nothing goes from a map where this is asked for: rows are slots.

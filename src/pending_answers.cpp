@@ -192,9 +192,9 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
   // A row that is `by` rows from another, or as far that way as its session goes.
   const auto number = [&](std::size_t row, std::int64_t by) {
     const CandidateRun session = order.around(std::min(row, map.size() - 1));
-    const std::int64_t there = std::clamp(static_cast<std::int64_t>(row) + by,
-                                          static_cast<std::int64_t>(session.first),
-                                          static_cast<std::int64_t>(session.last) - 1);
+    const std::int64_t there =
+        std::clamp(static_cast<std::int64_t>(row) + by, static_cast<std::int64_t>(session.first),
+                   static_cast<std::int64_t>(session.last) - 1);
     return static_cast<std::size_t>(order.number(static_cast<std::size_t>(there)));
   };
   // The line through the frame itself, or the nearest one that reaches it.

@@ -54,8 +54,7 @@ double PlaceBelief::Level::lead(double value) const noexcept {
   return (value - mean) / std::sqrt(variance + 0.25);
 }
 
-PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
-    : depth_(config.patience + 1) {
+PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config) : depth_(config.patience + 1) {
   const bool used = config.decision == Decision::probability;
   rows_ = arena.take<Hypothesis>("hypotheses", used ? most : 0);
   moved_ = arena.take<Hypothesis>("hypotheses that have moved", used ? 4 * most : 0);

@@ -54,8 +54,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
       standardised_(
           arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
-      spacing_(arena.take<float>("spacing of places",
-                                 full_map_ == FullMap::thin ? capacity.places : 0)),
+      spacing_(
+          arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
       first_visits_(arena.take<std::uint64_t>("visits of one place",
                                               links(config, capacity) ? capacity.places : 0)) {}
 
@@ -93,9 +93,8 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
 
 bool PlaceMap::add_saved(const Saved& place) noexcept {
   const std::size_t first = order_.session(order_.sessions() - 1).first;
-  const bool follows =
-      place.number >= order_.next_number() &&
-      (first == size() || place.frame > order_.frame(size() - 1));
+  const bool follows = place.number >= order_.next_number() &&
+                       (first == size() || place.frame > order_.frame(size() - 1));
   // Nothing has gone yet, so that the next slot is the next row.
   if (size() == capacity() || !order_.straight() || !follows ||
       !rows_.load(size(), place.descriptor)) {

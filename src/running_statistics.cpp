@@ -94,8 +94,8 @@ bool RunningStatistics::restore(std::span<const double> mean, std::span<const do
   std::ranges::copy(mean, mean_.begin());
   std::ranges::copy(variance, variance_.begin());
   sum_up();
-  frames_ = static_cast<std::size_t>(std::min<std::uint64_t>(
-      frames, std::numeric_limits<std::size_t>::max()));
+  frames_ = static_cast<std::size_t>(
+      std::min<std::uint64_t>(frames, std::numeric_limits<std::size_t>::max()));
   return true;
 }
 

@@ -115,11 +115,10 @@ std::size_t SequenceSearch::score(const DifferenceSlices& slices, const PlaceOrd
   order.in_sessions(run, [&](CandidateRun part) {
     CandidateRun session = order.around(part.first);
     session.last = std::min(session.last, rows);
-    line_sums += slices.whole()
-                     ? score_run(slices, order, oldest, part, session, scale, whole_columns_,
-                                 whole_sums_, whole_lowest_)
-                     : score_run(slices, order, oldest, part, session, scale, columns_, sums_,
-                                 lowest_);
+    line_sums += slices.whole() ? score_run(slices, order, oldest, part, session, scale,
+                                            whole_columns_, whole_sums_, whole_lowest_)
+                                : score_run(slices, order, oldest, part, session, scale, columns_,
+                                            sums_, lowest_);
   });
   return line_sums;
 }

@@ -93,6 +93,14 @@ class Detector {
   /// Allocates: never.
   [[nodiscard]] std::span<const Answer> finish() noexcept;
 
+  /// By what the drive's frames are standardised now: what its session is saved with, and a later
+  /// drive starts from. `frames() == 0` where nothing is.
+  [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
+
+  /// A full map may forget places, but none of the newest so many: they are still needed elsewhere,
+  /// or are to be saved first. 0 at first.
+  void keep_newest(std::size_t places) noexcept { keep_ = places; }
+
   /// What is believed at the newest frame, and what for: where the decision is by probability.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept {
     return pending_.evidence();
@@ -133,6 +141,7 @@ class Detector {
   ArenaMemory memory_;
   MatcherConfig config_;
   PlaceMap* map_;
+  std::size_t keep_ = 0;            // newest places that somebody else needs
   std::uint64_t window_began_ = 0;  // the first frame that is matched together with the newest
   Trajectories trajectories_;
   RunningStatistics statistics_;

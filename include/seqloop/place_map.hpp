@@ -90,14 +90,19 @@ class PlaceMap {
              std::size_t keep) noexcept;
 
   /// Two rows are visits of one place. Rows between this one and the last that was linked are too,
-  /// where both lie close together. A detector that decides by probability links what it finds;
-  /// what it found may be linked again, in the same order, in a map that was saved.
+  /// where both lie close together. A detector that decides by probability links what it finds, at
+  /// most `patience` frames and as many rows later.
   /// Work: as many rows as lie between, 40 at most. Allocates: never.
   void link(std::size_t row, std::size_t earlier) noexcept;
 
   /// The number of the first place that this one is a visit of; its own where it was not linked.
   [[nodiscard]] std::uint64_t first_visit(std::size_t row) const noexcept {
     return first_visits_.empty() ? order_.number(row) : first_visits_[order_.slot(row)];
+  }
+
+  /// Puts back what `first_visit` gave before the map was saved.
+  void set_first_visit(std::size_t row, std::uint64_t number) noexcept {
+    if (!first_visits_.empty()) first_visits_[order_.slot(row)] = number;
   }
 
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.

@@ -139,8 +139,7 @@ class PlaceBelief {
   void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void give_birth(const View& view, double mass) noexcept;
   void weigh(const View& view, const Scene& scene) noexcept;
-  void sharpen(const PlaceOrder& order, const Scene& scene,
-               std::span<const double> gains) noexcept;
+  void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const View& view, const Scene& scene) noexcept;
   void write_trace(std::span<const double> gains) noexcept;
   [[nodiscard]] double share(const View& view, std::uint64_t frame, std::size_t row) noexcept;

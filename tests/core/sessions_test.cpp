@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+// Maps of several sessions: answered as the best of their maps, one by one; nothing crosses a
+// border; what is saved and put back answers alike.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/matcher.hpp"
+#include "core/shown_drive.hpp"
+
+namespace seqloop {
+namespace {
+
+using oracle::Vectors;
+
+/// A map of these sessions, with room for a drive that is added.
+PlaceMap map_of_sessions(const std::vector<Vectors>& sessions, const MatcherConfig& config,
+                         std::size_t more) {
+  std::size_t places = more;
+  for (const Vectors& session : sessions) places += session.size();
+  PlaceMap map(config, {places, sessions.front().front().size(), sessions.size() + 1});
+  for (const Vectors& session : sessions) {
+    EXPECT_TRUE(map.begin_session());
+    for (const auto& place : session) static_cast<void>(map.learn(place));
+    for (const auto& place : session) EXPECT_TRUE(map.add(place));
+  }
+  return map;
+}
+
+std::vector<FrameReport> run_through(PlaceMap& map, const Vectors& query,
+                                     const MatcherConfig& config) {
+  Detector detector(config, map);
+  std::vector<FrameReport> all;
+  for (const auto& descriptor : query) all.push_back(detector.step(descriptor));
+  return all;
+}
+
+/// A report of one of the maps that the sessions are, one by one.
+struct OfOne {
+  const Match* match;
+  std::size_t first;  // its first place's number in the map of all
+  bool has_runner_up;
+};
+
+class Sessions : public testing::TestWithParam<Arithmetic> {};
+
+TEST_P(Sessions, AreSearchedAsTheBestOfTheirMaps) {
+  std::size_t answered = 0;
+  std::size_t in_running = 0;
+  std::size_t in_earlier = 0;
+  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+    MatcherConfig config = paper(Candidates::all, std::vector<std::size_t>{0, 1, 5, 20}[seed % 4],
+                                 seed % 3 == 0 ? Use::localise : Use::close_loops);
+    config.arithmetic = GetParam();
+    config.enhance = seed % 5 == 0;
+    config.exclude = 6 + seed % 40;
+    config.rwindow = 2 + seed % 9;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::vector<Vectors> sessions{oracle::drive(seed, 30 + 17 * (seed % 9), 24, 0.3F),
+                                        oracle::drive(seed + 100, 150, 24, 0.3F)};
+    // First through the one, then through the other, then through the first part again.
+    Vectors query = oracle::drive(seed, 60, 24, 0.5F);
+    const Vectors other = oracle::drive(seed + 100, 60, 24, 0.5F);
+    const Vectors again = oracle::drive(seed + 300, 60, 24, 0.2F);
+    for (const Vectors& part : {other, again, again}) {
+      query.insert(query.end(), part.begin(), part.end());
+    }
+    std::vector<std::vector<FrameReport>> apart;
+    for (const Vectors& session : sessions) {
+      MatcherConfig one = config;
+      one.use = Use::localise;
+      apart.push_back(reports(session, query, one));
+    }
+    if (config.use == Use::close_loops) apart.push_back(reports({}, query, config));
+
+    PlaceMap map = map_of_sessions(sessions, config, query.size());
+    const std::vector<FrameReport> together = run_through(map, query, config);
+    for (std::size_t frame = 0; frame < query.size(); ++frame) {
+      std::optional<OfOne> best;
+      std::uint64_t candidates = 0;
+      std::size_t first = 0;
+      for (std::size_t session = 0; session < apart.size(); ++session) {
+        const FrameReport& report = apart[session][frame];
+        candidates += report.work.candidates;
+        if (report.match && (!best || report.match->score < best->match->score)) {
+          best = {&*report.match, first, report.work.candidates > config.rwindow + 1};
+        }
+        if (session < sessions.size()) first += sessions[session].size();
+      }
+      const FrameReport& report = together[frame];
+      ASSERT_EQ(report.match.has_value(), best.has_value()) << frame;
+      ASSERT_EQ(report.work.candidates, candidates) << frame;
+      if (!best) continue;
+      ++answered;
+      ++(best->first == sessions[0].size() + sessions[1].size() ? in_running : in_earlier);
+      ASSERT_EQ(report.match->place, best->match->place + best->first) << frame;
+      ASSERT_EQ(report.match->head, best->match->head + best->first) << frame;
+      ASSERT_EQ(report.match->score, best->match->score) << frame;
+      if (best->has_runner_up) {
+        ASSERT_EQ(report.match->uniqueness, best->match->uniqueness) << frame;
+      }
+    }
+  }
+  EXPECT_GT(answered, 3'000U);
+  EXPECT_GT(in_running, 300U);
+  EXPECT_GT(in_earlier, 1'000U);
+}
+
+/// All that a detector can be, in a map that grows.
+std::vector<MatcherConfig> kinds(Arithmetic arithmetic) {
+  std::vector<MatcherConfig> kinds;
+  for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
+    for (const bool relocalise : {false, true}) {
+      for (const Decision decision : {Decision::uniqueness, Decision::probability}) {
+        MatcherConfig config;
+        config.arithmetic = arithmetic;
+        config.candidates = candidates;
+        config.relocalising.on = relocalise;
+        config.relocalising.rows_scanned = 64;
+        config.decision = decision;
+        config.use = Use::close_loops;
+        config.exclude = 40;
+        kinds.push_back(config);
+      }
+    }
+  }
+  return kinds;
+}
+
+TEST_P(Sessions, NoLineRunsAcrossABorder) {
+  // One way, cut in three: a line across would fit best.
+  const Vectors way = oracle::drive(7, 240, 64, 0.2F);
+  const std::vector<Vectors> sessions{{way.begin(), way.begin() + 80},
+                                      {way.begin() + 80, way.begin() + 160},
+                                      {way.begin() + 160, way.end()}};
+  const Vectors again = oracle::drive(7, 240, 64, 0.4F);
+  for (MatcherConfig config : kinds(GetParam())) {
+    for (const Use use : {Use::localise, Use::close_loops}) {
+      config.use = use;
+      PlaceMap map = map_of_sessions(sessions, config, 240);
+      Detector detector(config, map);
+      std::size_t matches = 0;
+      for (std::size_t frame = 0; frame < 240; ++frame) {
+        if (frame % 50 == 49) detector.skip(1 + frame % 7);
+        const FrameReport report = detector.step(again[frame]);
+        if (!report.match) continue;
+        ++matches;
+        EXPECT_EQ(map.order().session_of_number(report.match->place),
+                  map.order().session_of_number(report.match->head))
+            << "frame " << frame;
+      }
+      EXPECT_GT(matches, 100U);
+    }
+  }
+}
+
+TEST_P(Sessions, EarlierPlacesAreCandidatesFromTheFirstFrameOn) {
+  const Vectors earlier = oracle::drive(8, 200, 64, 0.2F);
+  const Vectors query = oracle::drive(8, 120, 64, 0.4F);
+  for (const MatcherConfig& config : kinds(GetParam())) {
+    PlaceMap map = map_of_sessions({earlier}, config, query.size());
+    std::size_t right = 0;
+    for (const FrameReport& report : run_through(map, query, config)) {
+      if (!report.match) continue;
+      if (report.match->place >= earlier.size()) {
+        EXPECT_LT(report.match->place - earlier.size() + config.exclude, *report.frame);
+      }
+      right += report.match->place <= *report.frame + 2 && *report.frame <= report.match->place + 2;
+    }
+    EXPECT_EQ(map.size(), 320U);
+    EXPECT_EQ(map.order().frame(200), 0U);
+    EXPECT_GT(right, 60U) << static_cast<int>(config.candidates) << config.relocalising.on
+                          << static_cast<int>(config.decision);
+  }
+}
+
+TEST_P(Sessions, WhatIsSavedAndPutBackAnswersAlike) {
+  const Vectors first = oracle::drive(9, 150, 40, 0.2F);
+  Vectors second = oracle::drive(9, 100, 40, 0.4F);
+  const Vectors anew = oracle::drive(10, 80, 40, 0.2F);
+  for (const Vectors& part : {anew, anew}) second.insert(second.end(), part.begin(), part.end());
+  for (const MatcherConfig& config : kinds(GetParam())) {
+    const Capacity room{first.size() + second.size(), 40, 2};
+    PlaceMap map(config, room);
+    PlaceMap loaded(config, room);
+    {
+      Detector detector(config, map);
+      Vectors laps = first;
+      for (const auto& descriptor : laps) static_cast<void>(detector.step(descriptor));
+      static_cast<void>(detector.finish());
+      const RunningStatistics& learnt = detector.statistics();
+      const std::vector<double> mean(learnt.mean().begin(), learnt.mean().end());
+      const std::vector<double> variance(learnt.variance().begin(), learnt.variance().end());
+      ASSERT_TRUE(map.set_statistics(mean, variance, learnt.frames()));
+      ASSERT_TRUE(loaded.set_statistics(mean, variance, learnt.frames()));
+    }
+    std::vector<std::byte> bytes(map.rows().saved_size());
+    for (std::size_t row = 0; row < map.size(); ++row) {
+      map.rows().save(map.order().slot(row), bytes);
+      ASSERT_TRUE(loaded.add_saved({map.order().number(row), map.order().frame(row), bytes}));
+      loaded.set_first_visit(row, map.first_visit(row));
+    }
+    const std::vector<FrameReport> wanted = run_through(map, second, config);
+    const std::vector<FrameReport> got = run_through(loaded, second, config);
+    std::size_t matches = 0;
+    for (std::size_t frame = 0; frame < second.size(); ++frame) {
+      ASSERT_EQ(got[frame].match.has_value(), wanted[frame].match.has_value());
+      ASSERT_EQ(got[frame].gate, wanted[frame].gate);
+      ASSERT_EQ(got[frame].work, wanted[frame].work);
+      if (!got[frame].match) continue;
+      ++matches;
+      ASSERT_EQ(std::memcmp(&*got[frame].match, &*wanted[frame].match, sizeof(Match)), 0) << frame;
+    }
+    EXPECT_GT(matches, 100U);
+  }
+}
+
+TEST_P(Sessions, PlacesGoFromTheOldestOrWhereTheyAreDensest) {
+  const Vectors earlier = oracle::drive(11, 150, 40, 0.2F);
+  const Vectors query = oracle::drive(12, 200, 40, 0.2F);
+  for (MatcherConfig config : kinds(GetParam())) {
+    for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
+      config.full_map = full_map;
+      const std::vector<Vectors> halves{{earlier.begin(), earlier.begin() + 75},
+                                        {earlier.begin() + 75, earlier.end()}};
+      PlaceMap map = map_of_sessions(halves, config, 100);
+      for (const FrameReport& report : run_through(map, query, config)) {
+        ASSERT_FALSE(report.map_full);
+        if (!report.match) continue;
+        ASSERT_EQ(map.order().session_of_number(report.match->place),
+                  map.order().session_of_number(report.match->head));
+      }
+      // Two hundred came, there was room for a hundred.
+      const PlaceOrder& order = map.order();
+      EXPECT_EQ(map.size(), 250U);
+      EXPECT_EQ(order.sessions(), 3U);
+      std::size_t sum = 0;
+      for (std::size_t session = 0; session < 3; ++session) {
+        const CandidateRun rows = order.session(session);
+        ASSERT_EQ(rows.first, sum);
+        sum = rows.last;
+        for (std::size_t row = rows.first; row < rows.last; ++row) {
+          EXPECT_EQ(order.session_of(row), session);
+          EXPECT_EQ(order.session_of_number(order.number(row)), session);
+          EXPECT_EQ(order.frame(row), order.number(row) - (session < 2 ? 75 * session : 150));
+        }
+      }
+      EXPECT_EQ(sum, 250U);
+      if (full_map == FullMap::forget_oldest) {
+        EXPECT_EQ(order.session(0).last, 0U);
+        EXPECT_EQ(order.session(1).last, 50U);
+        EXPECT_EQ(order.number(0), 100U);
+      } else {
+        // The ends of a session have no two neighbours, and stay.
+        for (const std::uint64_t end : {0U, 74U, 75U, 149U, 150U}) {
+          bool stays = false;
+          for (std::size_t row = 0; row < map.size(); ++row) {
+            stays = stays || order.number(row) == end;
+          }
+          EXPECT_TRUE(stays) << end;
+        }
+      }
+    }
+  }
+}
+
+TEST(MapOfSessions, ADriveNeedsRoomForItsOwn) {
+  MatcherConfig config = paper(Candidates::all, 5, Use::close_loops);
+  PlaceMap map(config, {40, 9, 1});
+  for (const auto& place : oracle::drive(1, 20, 9)) EXPECT_TRUE(map.add(place));
+  EXPECT_THROW(Detector(config, map), SetupError);
+  config.use = Use::localise;
+  const Detector reads_only(config, map);
+  EXPECT_EQ(map.order().sessions(), 1U);
+}
+
+TEST(MapOfSessions, PutBackOnlyWhatFits) {
+  MatcherConfig config;
+  PlaceMap map(config, {3, 4, 1});
+  const std::vector<std::byte> place(4, std::byte{5});
+  std::vector<std::byte> beyond = place;
+  beyond[2] = std::byte{0x80};
+  EXPECT_FALSE(map.add_saved({0, 0, std::span(place).first(3)}));
+  EXPECT_FALSE(map.add_saved({0, 0, beyond})) << "-128 is no value of a place";
+  EXPECT_TRUE(map.add_saved({7, 3, place}));
+  EXPECT_FALSE(map.add_saved({7, 4, place})) << "numbers ascend";
+  EXPECT_FALSE(map.add_saved({8, 3, place})) << "frames ascend";
+  EXPECT_TRUE(map.add_saved({9, 5, place}));
+  EXPECT_TRUE(map.add_saved({10, 6, place}));
+  EXPECT_FALSE(map.add_saved({11, 7, place})) << "full";
+  EXPECT_EQ(map.order().number(0), 7U);
+  EXPECT_FALSE(map.set_statistics(std::vector<double>(4), std::vector<double>(4, -1.0), 5));
+  EXPECT_FALSE(map.set_statistics(std::vector<double>(3), std::vector<double>(3), 5));
+  EXPECT_TRUE(map.set_statistics(std::vector<double>(4), std::vector<double>(4, 1.0), 5));
+}
+
+INSTANTIATE_TEST_SUITE_P(Arithmetics, Sessions,
+                         testing::Values(Arithmetic::int8, Arithmetic::float32,
+                                         Arithmetic::sketch));
+
+}  // namespace
+}  // namespace seqloop
