@@ -51,6 +51,21 @@ std::size_t PlaceOrder::row_of_frame(std::uint64_t frame) const noexcept {
   return first;
 }
 
+std::optional<std::size_t> PlaceOrder::row_of_number(std::uint64_t number) const noexcept {
+  std::size_t first = 0;
+  std::size_t last = size_;
+  while (first < last) {
+    const std::size_t middle = first + (last - first) / 2;
+    if (this->number(middle) < number) {
+      first = middle + 1;
+    } else {
+      last = middle;
+    }
+  }
+  if (first == size_ || this->number(first) != number) return std::nullopt;
+  return first;
+}
+
 std::size_t PlaceOrder::append(std::uint64_t frame, std::uint64_t number) noexcept {
   const std::size_t slot = free_slot_;
   slots_[at(size_)] = static_cast<std::uint32_t>(slot);

@@ -68,6 +68,10 @@ class PlaceMap {
   /// Work: D and the sketch. Allocates: never.
   [[nodiscard]] bool add_saved(const Saved& place) noexcept;
 
+  /// The next place gets this number, or a higher one if that is its turn: places that went from a
+  /// map that was saved do not give theirs to others.
+  void count_from(std::uint64_t number) noexcept { order_.count_from(number); }
+
   /// Takes over the statistics of the newest session: a new drive starts from them.
   /// @param mean, variance [D] finite, variances from 0   @param frames 1 or more
   /// @return false when they are not like that, or nothing is to be standardised: then nothing has

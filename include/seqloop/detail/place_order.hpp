@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -35,6 +36,9 @@ class PlaceOrder {
 
   /// The number that the next place gets, unless one is given.
   [[nodiscard]] std::uint64_t next_number() const noexcept { return next_; }
+
+  /// The next place gets this number, or a higher one if that is its turn.
+  void count_from(std::uint64_t number) noexcept { next_ = std::max(next_, number); }
 
   /// The frame of its session that the place is.
   [[nodiscard]] std::uint64_t frame(std::size_t row) const noexcept { return frames_[slot(row)]; }
@@ -79,6 +83,9 @@ class PlaceOrder {
   /// The first row of the newest session whose frame is this one or later; size() if there is none.
   /// Work: log N.
   [[nodiscard]] std::size_t row_of_frame(std::uint64_t frame) const noexcept;
+
+  /// The row of the place with a number; none where it has gone. Work: log N.
+  [[nodiscard]] std::optional<std::size_t> row_of_number(std::uint64_t number) const noexcept;
 
   /// Calls `work(part)` for the parts of a run that are of one session each, in rising order.
   template <class Work>

@@ -50,6 +50,10 @@ void check_describer(const DriveSettings& settings, bool training_given);
 [[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings,
                                                         std::span<FrameSource* const> training);
 
+/// What describes pictures, in words that are equal only where descriptors can be compared: a model
+/// by its files' bytes, what was learnt by where it was learnt. Throws SetupError.
+[[nodiscard]] std::string fingerprint(const DriveSettings& settings);
+
 /// Opens an image folder, a video or an `.npy` file. Throws SetupError.
 /// @param flag the flag that names the drive, for the message when it was not given
 [[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,

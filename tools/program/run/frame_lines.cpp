@@ -26,7 +26,8 @@ void FrameLines::end(std::span<const Answer> answers) {
 
 void FrameLines::write() {
   if (!line_) return;
-  const auto line = std::exchange(line_, std::nullopt);
+  auto line = std::exchange(line_, std::nullopt);
+  if (map_ != nullptr) map_->add_to(*line);
   // A file name in a message may be no UTF-8.
   out_->write(line->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
   out_->flush();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "program/map/lasting_map.hpp"
 #include "program/run/frame_json.hpp"
 #include "seqloop/files/output_file.hpp"
 
@@ -16,7 +17,9 @@ class FrameLines {
   /// @param out  lives longer
   /// @param live whether each line is written at once. Otherwise it is written when the next one is
   ///   there, so that the last frame's can take the answers that are due at the end.
-  FrameLines(files::OutputFile& out, bool live) : out_(&out), live_(live) {}
+  /// @param map   what says of which session places are; null: none
+  FrameLines(files::OutputFile& out, bool live, const LastingMap* map)
+      : out_(&out), live_(live), map_(map) {}
 
   /// Throws files::IoError.
   void add(const ProcessedFrame& processed, const LoopState& state);
@@ -30,6 +33,7 @@ class FrameLines {
 
   files::OutputFile* out_;
   bool live_;
+  const LastingMap* map_;
   std::optional<nlohmann::ordered_json> line_;  // that waits to be written
 };
 

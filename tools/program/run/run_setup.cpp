@@ -41,6 +41,26 @@ void choose_places(RunSetup& setup, const RunSettings& settings, const FrameSour
   setup.why_places = {"max-places", fmt::format("room for {} places is asked for", setup.places)};
 }
 
+/// Opens the map that lasts, and makes room for what it holds, too.
+void open_map(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
+              Faults& faults) {
+  collect(faults, [&] {
+    setup.map = open_map(settings.map, setup.config, setup.descriptor_size,
+                         setup.describer ? fingerprint(drive) : "descriptors");
+  });
+  if (!setup.map) return;
+  const Capacity room = setup.map->capacity(setup.places);
+  setup.sessions = room.sessions;
+  if (settings.max_places == 0) {
+    setup.places = room.places;
+    setup.why_places.why += fmt::format(", and for the {} of the map", setup.map->places());
+  } else if (setup.map->places() > setup.places) {
+    faults.push_back({"max-places",
+                      fmt::format("the map has {} places already", setup.map->places()),
+                      "raise --max-places"});
+  }
+}
+
 void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) {
   collect(faults, [&] { setup.out = std::make_unique<files::OutputFile>(settings.out); });
   if (!settings.summary.empty()) {
@@ -80,7 +100,9 @@ std::optional<std::uint64_t> RunSetup::frame_count(std::size_t wanted) const noe
 RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   RunSetup setup;
   open_outputs(setup, settings, faults);
-  const bool closing = settings.reference.empty();
+  const bool lasts = !settings.map.file.empty();
+  const bool closing = settings.reference.empty() && !settings.map.read_only;
+  check(settings.map, !settings.reference.empty(), faults);
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);
@@ -93,11 +115,12 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   DriveSettings drive = settings.drive;
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);
-  if (pictures || !(closing || is_described(settings.reference))) {
+  const bool given = !settings.reference.empty();
+  if (pictures || (given && !is_described(settings.reference))) {
     suit_descriptor(drive, setup.config.difference, faults);
     collect(faults, [&] { setup.describer = open_describer(drive); });
   }
-  if (!closing) {
+  if (given) {
     collect(faults, [&] { setup.reference = open_drive(settings.reference, "reference", drive); });
   }
   open_source(setup, settings, drive, clock, faults);
@@ -108,8 +131,9 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                                 : setup.describer->size();
   };
   setup.descriptor_size = size_of(setup.recording.get());
-  choose_places(setup, settings, closing ? setup.recording.get() : setup.reference.get(),
-                closing ? settings.source : settings.reference);
+  choose_places(setup, settings, given ? setup.reference.get() : setup.recording.get(),
+                given ? settings.reference : settings.source);
+  if (lasts) open_map(setup, settings, drive, faults);
   if (setup.reference && size_of(setup.reference.get()) != setup.descriptor_size) {
     faults.push_back({"reference, source",
                       fmt::format("descriptors of {} and of {} values",
@@ -117,7 +141,10 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                       "describe both with the same model and layer"});
   }
   if (const auto frames = setup.recording ? setup.recording->frame_count() : std::nullopt) {
-    check_length(faults, setup.config, *frames, setup.places);
+    // With places to begin with, none of the drive's own is needed.
+    MatcherConfig config = setup.config;
+    if (setup.map && setup.map->places() > 0) config.use = Use::localise;
+    check_length(faults, config, *frames, setup.places);
   }
   refuse(std::move(faults));
   return setup;

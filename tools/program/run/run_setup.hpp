@@ -8,6 +8,7 @@
 #include <string>
 
 #include "program/drives/drives.hpp"
+#include "program/map/lasting_map.hpp"
 #include "program/options/camera_options.hpp"
 #include "program/options/loop_options.hpp"
 #include "program/options/matcher_settings.hpp"
@@ -34,6 +35,7 @@ struct RunSettings {
   std::size_t frames = 0;      ///< 0: all
   std::size_t max_places = 0;  ///< 0: as many as the drive has
   double give_up_s = 0.0;      ///< 0: never
+  MapSettings map;
   DriveSettings drive;
   CameraSettings camera;
   MatcherSettings matcher;
@@ -51,10 +53,12 @@ struct RunSetup {
   std::unique_ptr<live::LiveSource> live;  ///< a camera, or the recording at its own pace
   std::string capture;                     ///< the camera and its mode; empty for recordings
   std::unique_ptr<FrameSource> reference;  ///< none when loops are closed
+  std::unique_ptr<LastingMap> map;         ///< none unless asked for
   std::unique_ptr<files::OutputFile> out;
   std::unique_ptr<files::OutputFile> summary;  ///< none unless asked for
   std::size_t descriptor_size = 0;
   std::size_t places = 0;
+  std::size_t sessions = 1;
   Fault why_places;  ///< who wants so many; a fault only where they cannot be had
 
   /// Where frames come from.

@@ -79,7 +79,7 @@ void run(const RunSettings& settings, Faults faults) {
 
   // Start-up: the map, then every path once, before the first frame counts.
   PlaceMap map = with_room(setup, [&] {
-    return PlaceMap(setup.config, {setup.places, setup.descriptor_size});
+    return PlaceMap(setup.config, {setup.places, setup.descriptor_size, setup.sessions});
   });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
@@ -88,6 +88,7 @@ void run(const RunSettings& settings, Faults faults) {
     tell_notes(settings.reference, *setup.reference);
     tell_blank(settings.reference, blank_places, map.size());
   }
+  if (setup.map) setup.map->load(map);
   Detector detector = with_room(setup, [&] { return Detector(setup.config, map); });
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
@@ -95,6 +96,8 @@ void run(const RunSettings& settings, Faults faults) {
   std::vector<float> query(map.rows().restored_size());
   Progress progress("running", setup.frame_count(settings.frames));
   TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
+  // A thread that saves is no part of the loop.
+  if (setup.map) setup.map->begin(map, setup.config, settings.matcher.method);
   become_real_time(settings.real_time);
   warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
   start_playing(setup, settings, clock);
@@ -102,10 +105,11 @@ void run(const RunSettings& settings, Faults faults) {
   setup.out->heed(interrupted);
   const live::ThreadCounters warm = live::thread_counters();
 
-  const bool closing = settings.reference.empty();
+  // In a map that lasts, a place goes by its own number.
+  const bool closing = settings.reference.empty() && !setup.map;
   SourceNumbers numbers =
       with_room(setup, [&] { return SourceNumbers(setup.config, closing ? &map : nullptr); });
-  FrameLines lines(*setup.out, setup.live != nullptr);
+  FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get());
   std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
@@ -124,6 +128,11 @@ void run(const RunSettings& settings, Faults faults) {
       detector.newest_query(query);
       recorder.add(processed->report.newest, query);
       recorder.add(processed->report.answers);
+    }
+    if (setup.map && processed->report.gate != Gate::no_frame) {
+      setup.map->note(detector, processed->report.newest, processed->frame.index,
+                      processed->frame.time_s, processed->report.answers);
+      if (const auto trouble_saving = setup.map->trouble()) progress.tell(*trouble_saving);
     }
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
@@ -152,6 +161,7 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   const std::span<const Answer> rest = detector.finish();
+  const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
   recorder.add(rest);
   summary.add(rest);
   tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
@@ -181,7 +191,9 @@ void run(const RunSettings& settings, Faults faults) {
   }
   if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
   say_raw("seqloop: " + summary.text());
+  if (setup.map) say("{}: {}", settings.map.file.string(), setup.map->summary());
   if (unwritten) std::rethrow_exception(unwritten);
+  if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
   if (given_up) {
     throw std::runtime_error(fmt::format("{}: no frame for {:g} seconds: given up",
                                          settings.source.string(), settings.give_up_s));
@@ -199,6 +211,8 @@ constexpr std::string_view tasks =
   close loops       --source DRIVE                  room for as many places as DRIVE has frames; the
                                                     newest 100 frames are no places (--exclude)
   localise          --source DRIVE --reference MAP  a place for each frame of MAP
+  a map that lasts  --source DRIVE --map FILE       both: in all that FILE has, and in DRIVE, which
+                                                    is added to it while it runs
   run on a camera   --source /dev/video0            room for 20000 places; the cheapest mode of 10
                                                     frames a second or more; late frames dropped
   time a recording  --source DRIVE --pace live      10 frames a second of a folder; late frames
@@ -235,6 +249,8 @@ Verb run_verb() {
                     "as it goes [max]",
                     [settings](std::string_view value) { settings->pace = parse_pace(value); }});
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
+  add_map_options(verb.options, settings->map);
+  verb.options.section("Source");
   add_drive_options(verb.options, settings->drive);
   add_matcher_options(verb.options, settings->matcher);
   verb.options.section("Matching");

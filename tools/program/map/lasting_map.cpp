@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "program/map/lasting_map.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "program/map/map_writer.hpp"
+#include "program/map/stored_map.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SqliteMap : public LastingMap {
+ public:
+  SqliteMap(const MapSettings& settings, const MatcherConfig& config, std::size_t descriptor_size,
+            std::string describer)
+      : stored_(settings, config, descriptor_size, std::move(describer)),
+        save_every_s_(settings.save_every_s) {}
+
+  [[nodiscard]] std::size_t places() const noexcept override { return stored_.places(); }
+
+  [[nodiscard]] Capacity capacity(std::size_t drive) const noexcept override {
+    return stored_.capacity(drive);
+  }
+
+  void load(PlaceMap& map) override { stored_.load(map); }
+
+  void begin(const PlaceMap& map, const MatcherConfig& config, const std::string& method) override {
+    map_ = &map;
+    if (stored_.read_only()) return;
+    stored_.begin_session(method);
+    writer_.emplace(stored_, map, config, save_every_s_);
+  }
+
+  void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
+            std::span<const Answer> answers) noexcept override {
+    if (writer_) writer_->note(detector, counted, index, time_s, answers);
+  }
+
+  [[nodiscard]] std::optional<std::string> finish(Detector& detector,
+                                                  std::span<const Answer> rest) override {
+    return writer_ ? writer_->finish(detector, rest) : std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<std::string> trouble() override {
+    return writer_ ? writer_->trouble() : std::nullopt;
+  }
+
+  void add_to(Json& frame) const override {
+    for (Json& answer : frame["answers"]) name_place(answer, "match");
+    name_place(frame, "match");
+    if (!frame["now"].is_null()) name_place(frame["now"], "place");
+    frame["saved"] = writer_ ? writer_->saved() : 0;
+  }
+
+  [[nodiscard]] std::string summary() const override {
+    if (!writer_) return fmt::format("the map has {} places; it was only read", map_->size());
+    return fmt::format("the map has {} places now; {} frames are saved, {} of them as places",
+                       map_->size(), writer_->saved(), writer_->saved_places());
+  }
+
+ private:
+  /// Adds the session of a place, and its frame there.
+  void name_place(Json& json, const char* key) const {
+    json["session"] = nullptr;
+    json["session_frame"] = nullptr;
+    if (json[key].is_null()) return;
+    const PlaceOrder& order = map_->order();
+    const auto number = json[key].get<std::uint64_t>();
+    const std::size_t session = order.session_of_number(number);
+    json["session"] = stored_.name(session);
+    const auto row = order.row_of_number(number);
+    if (!row) return;
+    const bool running = writer_ && session + 1 == order.sessions();
+    json["session_frame"] = running ? writer_->source_frame(*row) : order.frame(*row);
+  }
+
+  StoredMap stored_;
+  double save_every_s_;
+  const PlaceMap* map_ = nullptr;
+  std::optional<MapWriter> writer_;
+};
+
+}  // namespace
+
+std::unique_ptr<LastingMap> open_map(const MapSettings& settings, const MatcherConfig& config,
+                                     std::size_t descriptor_size, std::string describer) {
+  return std::make_unique<SqliteMap>(settings, config, descriptor_size, std::move(describer));
+}
+
+}  // namespace seqloop::program

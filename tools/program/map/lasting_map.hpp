@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "program/map/map_settings.hpp"
+#include "seqloop/detector.hpp"
+
+namespace seqloop::program {
+
+/// A map in a file, for one run: loaded before it, saved while it goes.
+class LastingMap {
+ public:
+  LastingMap() = default;
+  LastingMap(const LastingMap&) = delete;
+  LastingMap& operator=(const LastingMap&) = delete;
+  LastingMap(LastingMap&&) = delete;
+  LastingMap& operator=(LastingMap&&) = delete;
+  virtual ~LastingMap() = default;
+
+  /// Places that the file holds.
+  [[nodiscard]] virtual std::size_t places() const noexcept = 0;
+
+  /// Room that is needed for them, and for a drive. @param drive places that it adds at most
+  [[nodiscard]] virtual Capacity capacity(std::size_t drive) const noexcept = 0;
+
+  /// Fills an empty map, with progress. Throws SetupError: damaged.
+  virtual void load(PlaceMap& map) = 0;
+
+  /// The drive begins: from here on it is saved, unless the map is only read.
+  /// @param map the detector's, which lives longer. Throws SetupError.
+  virtual void begin(const PlaceMap& map, const MatcherConfig& config,
+                     const std::string& method) = 0;
+
+  /// What the detector has made of a frame that it has just taken.
+  /// @param counted the frame, as the detector counts; @param index as its source does
+  /// Allocates: never; no system call.
+  virtual void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
+                    std::span<const Answer> answers) noexcept = 0;
+
+  /// The drive is over: saves the rest, however long that takes.
+  /// @return why something could not be saved; nothing when all is
+  [[nodiscard]] virtual std::optional<std::string> finish(Detector& detector,
+                                                          std::span<const Answer> rest) = 0;
+
+  /// What there is to say of the disk, once. Never waits.
+  [[nodiscard]] virtual std::optional<std::string> trouble() = 0;
+
+  /// Says in what `run` says of a frame how much is saved, and of which session places are.
+  virtual void add_to(nlohmann::ordered_json& frame) const = 0;
+
+  /// What was added, for a summary.
+  [[nodiscard]] virtual std::string summary() const = 0;
+};
+
+/// @param describer what describes the drive: only what was described alike can be compared
+/// Throws SetupError, also where this build has no maps in files.
+[[nodiscard]] std::unique_ptr<LastingMap> open_map(const MapSettings& settings,
+                                                   const MatcherConfig& config,
+                                                   std::size_t descriptor_size,
+                                                   std::string describer);
+
+}  // namespace seqloop::program

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "program/map/map_settings.hpp"
+
+namespace seqloop::program {
+
+void add_map_options(OptionTable& options, MapSettings& settings) {
+  options.section("Map");
+  options.path("map", Access::writes, settings.file,
+               "map that lasts: localise in its sessions, and add the drive as another; made where "
+               "it is missing [none]");
+  options.flag("read-only", settings.read_only, "localise in the map, and leave it as it is");
+  options.text("session", settings.session, "name of the drive in the map [when it began]");
+  options.section("Map", Shown::in_help_all);
+  options.number("save-every-s", settings.save_every_s,
+                 "seconds of driving that may not be saved yet [1]");
+}
+
+void check(const MapSettings& settings, bool reference, Faults& faults) {
+  if (settings.file.empty()) {
+    if (settings.read_only) faults.push_back({"read-only", "there is no map", "--map FILE"});
+    if (!settings.session.empty()) faults.push_back({"session", "there is no map", "--map FILE"});
+    return;
+  }
+  if (reference) {
+    faults.push_back({"map, reference", "there are two maps", "leave out one of them"});
+  }
+  if (settings.read_only && !settings.session.empty()) {
+    faults.push_back({"session", "nothing is added to a map that is only read",
+                      "leave --session or --read-only out"});
+  }
+  if (!(settings.save_every_s > 0.0 && settings.save_every_s <= 3600.0)) {
+    faults.push_back({"save-every-s", "it must be above 0 and at most 3600"});
+  }
+}
+
+}  // namespace seqloop::program

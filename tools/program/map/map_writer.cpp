@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include "program/map/map_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace seqloop::program {
+namespace {
+
+// Places that are saved at once: a batch is in memory twice.
+constexpr std::uint64_t most_at_once = 4096;
+
+// Rows between two that are linked are linked as well, so many at most.
+constexpr std::size_t most_between = 40;
+
+std::int64_t nanoseconds(double seconds) {
+  constexpr double in_a_second = 1e9;
+  return static_cast<std::int64_t>(std::llround(seconds * in_a_second));
+}
+
+}  // namespace
+
+MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
+                     double every_s)
+    : stored_(&stored),
+      map_(&map),
+      settled_after_(config.patience + most_between + config.sequence_length),
+      first_number_(map.order().next_number()),
+      next_number_(first_number_),
+      came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
+            MatcherConfig::most_frames_at_once + 2),
+      source_frames_(map.capacity()),
+      added_(map.capacity()),
+      links_(map.capacity()) {
+  if (config.standardisation.on) {
+    handed_.mean.resize(map.descriptor_size());
+    handed_.variance.resize(map.descriptor_size());
+  }
+  if (config.full_map != FullMap::refuse) {
+    for (std::size_t row = 0; row < map.size(); ++row) earlier_.push_back(map.order().number(row));
+  }
+  const auto batch = static_cast<std::size_t>(std::min<std::uint64_t>(most_at_once, added_.size()));
+  bytes_.reserve(batch * map.rows().saved_size());
+  records_.reserve(batch);
+  batch_links_.reserve(batch);
+  thread_ = std::thread([this, every_s] { work(every_s); });
+}
+
+MapWriter::~MapWriter() {
+  if (!thread_.joinable()) return;
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
+                     std::span<const Answer> answers) noexcept {
+  for (; counted_ <= counted; ++counted_) {
+    came(counted_) = {index - (counted - counted_), nanoseconds(time_s), 0.0};
+  }
+  for (const Answer& answer : answers) {
+    if (answer.match && !std::isnan(answer.probability)) {
+      came(answer.frame).probability = static_cast<double>(answer.probability);
+    }
+  }
+  add_places();
+  if (counted_ > settled_after_) settle(counted_ - settled_after_);
+  hand_over_statistics(detector);
+  const std::uint64_t unsaved =
+      places_noted_.load(std::memory_order_relaxed) - saved_places_.load(std::memory_order_acquire);
+  detector.keep_newest(static_cast<std::size_t>(unsaved));
+  frames_.store(counted_, std::memory_order_release);
+}
+
+/// Notes the places that have been added since the last frame: the newest rows of the map.
+void MapWriter::add_places() noexcept {
+  const PlaceOrder& order = map_->order();
+  std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
+  if (next_number_ == order.next_number()) return;
+  // Several frames may have been taken at once: those to come are noted with the others.
+  for (std::size_t row = *order.row_of_number(next_number_);
+       row < order.size() && order.frame(row) < counted_; ++row, ++next_number_) {
+    const Came& frame = came(order.frame(row));
+    const std::size_t slot = order.slot(row);
+    source_frames_[slot] = frame.index;
+    added_[static_cast<std::size_t>(noted % added_.size())] = {
+        slot, {order.number(row), frame.index, frame.time_ns}};
+    ++noted;
+  }
+  places_noted_.store(noted, std::memory_order_release);
+}
+
+/// Notes what places are linked to, of frames before this one.
+void MapWriter::settle(std::uint64_t end) noexcept {
+  const PlaceOrder& order = map_->order();
+  const std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
+  std::uint64_t links = links_noted_.load(std::memory_order_relaxed);
+  const std::uint64_t saved = saved_links_.load(std::memory_order_acquire);
+  for (; settled_ < noted; ++settled_) {
+    const Added& added = added_[static_cast<std::size_t>(settled_ % added_.size())];
+    const auto row = order.row_of_number(added.record.number);
+    if (row && order.frame(*row) >= end) break;
+    if (!row || links - saved == links_.size()) continue;
+    const double probability = came(order.frame(*row)).probability;
+    constexpr double likely = 0.9;
+    if (probability >= likely) last_probability_ = probability;
+    const std::uint64_t first = map_->first_visit(*row);
+    if (first == added.record.number) continue;
+    links_[static_cast<std::size_t>(links++ % links_.size())] = {
+        0, added.record.frame, added.record.number, first,
+        probability >= likely ? probability : last_probability_};
+  }
+  links_noted_.store(links, std::memory_order_release);
+}
+
+void MapWriter::hand_over_statistics(const Detector& detector) noexcept {
+  if (handed_.mean.empty() || detector.statistics().frames() == 0 ||
+      handing_.load(std::memory_order_acquire) != Handing::asked) {
+    return;
+  }
+  handed_.frames = detector.statistics().frames();
+  std::ranges::copy(detector.statistics().mean(), handed_.mean.begin());
+  std::ranges::copy(detector.statistics().variance(), handed_.variance.begin());
+  handing_.store(Handing::ready, std::memory_order_release);
+}
+
+void MapWriter::work(double every_s) {
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    // Saving takes its time, too.
+    constexpr double share = 0.5;
+    wake_.wait_for(lock, std::chrono::duration<double>(share * every_s), [this] { return stop_; });
+    lock.unlock();
+    save({});
+    lock.lock();
+  }
+}
+
+/// Saves all that is noted. @param removed numbers of places that go
+/// @return whether it could
+bool MapWriter::save(std::span<const std::uint64_t> removed) {
+  try {
+    const std::uint64_t end = frames_.load(std::memory_order_acquire);
+    while (saved_frames_.load(std::memory_order_relaxed) < end ||
+           saved_links_.load(std::memory_order_relaxed) <
+               links_noted_.load(std::memory_order_acquire)) {
+      save_once({});
+    }
+    if (stopped_) save_once(removed);
+  } catch (const std::exception& error) {
+    why_ = error.what();
+    if (!std::exchange(failing_, true)) {
+      tell(why_ + ": the run goes on, and what is missing is saved as soon as it can be");
+    }
+    return false;
+  }
+  if (std::exchange(failing_, false)) tell("what was missing is saved");
+  return true;
+}
+
+void MapWriter::save_once(std::span<const std::uint64_t> removed) {
+  // The frames first: all places of theirs are noted then.
+  std::uint64_t frames = frames_.load(std::memory_order_acquire);
+  const std::uint64_t first = saved_places_.load(std::memory_order_relaxed);
+  std::uint64_t last = places_noted_.load(std::memory_order_acquire);
+  if (last - first > most_at_once) {
+    // Not all of their places come along.
+    last = first + most_at_once;
+    frames = saved_frames_.load(std::memory_order_relaxed);
+  }
+  const PlaceMap& map = *map_;
+  const std::size_t size = map.rows().saved_size();
+  records_.clear();
+  bytes_.resize(static_cast<std::size_t>(last - first) * size);
+  for (std::uint64_t place = first; place < last; ++place) {
+    const Added& added = added_[static_cast<std::size_t>(place % added_.size())];
+    map.rows().save(added.slot, std::span(bytes_).subspan(records_.size() * size, size));
+    records_.push_back(added.record);
+  }
+  const std::uint64_t first_link = saved_links_.load(std::memory_order_relaxed);
+  const std::uint64_t last_link =
+      std::min(links_noted_.load(std::memory_order_acquire), first_link + most_at_once);
+  batch_links_.clear();
+  for (std::uint64_t link = first_link; link < last_link; ++link) {
+    const sqlite::SavedLink& noted = links_[static_cast<std::size_t>(link % links_.size())];
+    // Its place comes along later.
+    if (noted.place && last > first && *noted.place > records_.back().number) break;
+    batch_links_.push_back(noted);
+  }
+  const bool ready = handing_.load(std::memory_order_acquire) == Handing::ready;
+  sqlite::MapBatch batch;
+  batch.frames = frames;
+  batch.records = records_;
+  batch.places = bytes_;
+  batch.links = batch_links_;
+  if (ready) batch.statistics = &handed_;
+  batch.removed = removed;
+  stored_->file().save(stored_->session(), batch);
+  if (ready) handing_.store(Handing::asked, std::memory_order_release);
+  saved_places_.store(last, std::memory_order_release);
+  saved_links_.store(first_link + batch_links_.size(), std::memory_order_release);
+  saved_frames_.store(frames, std::memory_order_release);
+}
+
+std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const Answer> rest) {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  for (const Answer& answer : rest) {
+    if (answer.match && !std::isnan(answer.probability)) {
+      came(answer.frame).probability = static_cast<double>(answer.probability);
+    }
+  }
+  settle(counted_);
+  handing_.store(Handing::asked, std::memory_order_relaxed);
+  hand_over_statistics(detector);
+  stopped_ = true;
+  std::vector<std::uint64_t> removed;
+  for (const std::uint64_t number : earlier_) {
+    if (!map_->order().row_of_number(number)) removed.push_back(number);
+  }
+  for (std::uint64_t number = first_number_; number < next_number_; ++number) {
+    if (!map_->order().row_of_number(number)) removed.push_back(number);
+  }
+  if (save(removed)) return std::nullopt;
+  return why_;
+}
+
+void MapWriter::tell(std::string text) {
+  const std::scoped_lock lock(mutex_);
+  told_ = std::move(text);
+  has_told_.store(true, std::memory_order_release);
+}
+
+std::optional<std::string> MapWriter::trouble() {
+  if (!has_told_.load(std::memory_order_acquire)) return std::nullopt;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) return std::nullopt;
+  has_told_.store(false, std::memory_order_relaxed);
+  return std::exchange(told_, std::nullopt);
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "program/map/stored_map.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "program/process/interruption.hpp"
+
+namespace seqloop::program {
+namespace {
+
+/// How places are kept, in words.
+std::string form_of(const MatcherConfig& config) {
+  std::string form;
+  switch (config.arithmetic) {
+    case Arithmetic::float32:
+      form = "float";
+      break;
+    case Arithmetic::int8:
+      form = "int8";
+      break;
+    case Arithmetic::sketch:
+      form = "sketch";
+      break;
+  }
+  form += config.difference == Difference::euclidean ? " euclidean" : " mean-absolute";
+  return form + (config.standardisation.on ? " standardised" : " raw");
+}
+
+sqlite::MapFile opened(const MapSettings& settings, const MatcherConfig& config,
+                       std::size_t descriptor_size, std::string describer) {
+  const PlaceMap one(config, {1, descriptor_size});
+  const sqlite::MapForm form{form_of(config), std::move(describer), descriptor_size,
+                             one.rows().saved_size()};
+  if (!settings.read_only) return sqlite::MapFile::open(settings.file, form);
+  sqlite::MapFile file = sqlite::MapFile::read_only(settings.file);
+  if (file.form() == form) return file;
+  throw SetupError(
+      {settings.file.string(),
+       fmt::format("its places are {}, of {} values, described by '{}'; these are {}, "
+                   "of {}, by '{}'",
+                   file.form().form, file.form().descriptor_size, file.form().describer, form.form,
+                   form.descriptor_size, form.describer),
+       "describe and compare as when the map was made"});
+}
+
+}  // namespace
+
+StoredMap::StoredMap(const MapSettings& settings, const MatcherConfig& config,
+                     std::size_t descriptor_size, std::string describer)
+    : file_(opened(settings, config, descriptor_size, std::move(describer))),
+      read_only_(settings.read_only),
+      new_name_(settings.session),
+      descriptor_size_(descriptor_size) {
+  for (const sqlite::SessionFacts& session : file_.sessions()) {
+    places_ += static_cast<std::size_t>(session.places);
+    if (session.places > 0) names_.push_back(session.name);
+    if (!new_name_.empty() && session.name == new_name_) {
+      throw SetupError({"session", "the map has one of the name '" + new_name_ + "'",
+                        "give it another, or leave --session out"});
+    }
+  }
+  if (read_only_ && places_ == 0) {
+    throw SetupError({settings.file.string(), "it has no places", "drive with --map first"});
+  }
+}
+
+Capacity StoredMap::capacity(std::size_t drive) const noexcept {
+  return {std::max<std::size_t>(places_ + (read_only_ ? 0 : drive), 1), descriptor_size_,
+          names_.size() + (read_only_ ? 0 : 1)};
+}
+
+void StoredMap::load(PlaceMap& map) {
+  const auto damaged = [this](const std::string& why) {
+    return SetupError({file_.path().string(), why, "seqloop map check says more"});
+  };
+  Progress progress("loading", places_);
+  const std::size_t bytes = map.rows().saved_size();
+  std::optional<std::int64_t> newest;
+  file_.read([&](const sqlite::PlaceBlock& block) {
+    stop_if_interrupted();
+    if (newest && *newest != block.session && !map.begin_session()) {
+      throw damaged("it has more sessions than it says");
+    }
+    newest = block.session;
+    for (std::size_t i = 0; i < block.records.size(); ++i) {
+      const sqlite::PlaceRecord& record = block.records[i];
+      if (!map.add_saved({record.number, record.frame, block.places.subspan(i * bytes, bytes)})) {
+        throw damaged(fmt::format("place {} is none that can follow", record.number));
+      }
+      progress.step();
+    }
+  });
+  progress.done();
+  map.count_from(file_.next_place());
+  const auto row_of = [&](std::uint64_t number) { return map.order().row_of_number(number); };
+  file_.read_links([&](const sqlite::SavedLink& link) {
+    if (!link.place) return;
+    if (const auto row = row_of(*link.place)) map.set_first_visit(*row, link.other);
+  });
+  if (!newest) return;
+  if (const auto statistics = file_.statistics(*newest)) {
+    static_cast<void>(
+        map.set_statistics(statistics->mean, statistics->variance, statistics->frames));
+  }
+}
+
+void StoredMap::begin_session(const std::string& settings) {
+  if (read_only_) return;
+  const auto now = std::chrono::system_clock::now();
+  const auto began =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
+  std::string name = new_name_;
+  if (name.empty()) {
+    const auto known = file_.sessions();
+    const auto taken = [&](const std::string& other) {
+      return std::ranges::find(known, other, &sqlite::SessionFacts::name) != known.end();
+    };
+    const std::string when = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                                         fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+    name = when;
+    for (int more = 2; taken(name); ++more) name = fmt::format("{}-{}", when, more);
+  }
+  session_ = file_.begin_session(name, began, settings);
+  names_.push_back(name);
+}
+
+}  // namespace seqloop::program
