@@ -8,12 +8,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "program/drives/drive_length.hpp"
 #include "program/drives/drives.hpp"
 #include "program/drives/map_builder.hpp"
+#include "program/map/lasting_map.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/progress.hpp"
@@ -32,8 +34,12 @@ struct MatchSettings {
   std::filesystem::path reference;
   std::filesystem::path query;
   std::filesystem::path out;
+  MapSettings map;
   MatcherSettings matcher;
 };
+
+// Described drives say nothing of time.
+constexpr double frames_a_second = 10.0;
 
 /// NaN carries no sign here.
 template <class Number>
@@ -99,7 +105,8 @@ class MatchList {
 
 void match(const MatchSettings& settings, Faults faults) {
   take_interruptions();
-  const bool closing = settings.reference.empty();
+  const bool closing = settings.reference.empty() && !settings.map.read_only;
+  check(settings.map, !settings.reference.empty(), faults);
   MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   // A recording is there whole, so that places can be read once for many frames.
@@ -111,7 +118,7 @@ void match(const MatchSettings& settings, Faults faults) {
   } else {
     collect(faults, [&] { query = read_descriptors(settings.query, config.difference); });
   }
-  if (!closing)
+  if (!settings.reference.empty())
     collect(faults, [&] { reference = read_descriptors(settings.reference, config.difference); });
   std::unique_ptr<files::OutputFile> out;
   if (settings.out.empty()) {
@@ -125,12 +132,20 @@ void match(const MatchSettings& settings, Faults faults) {
                                   reference->columns, query->columns),
                       "describe both with the same model and layer"});
   }
-  if (query && (closing || reference) && validate(config).empty()) {
+  std::unique_ptr<LastingMap> lasting;
+  if (query && !settings.map.file.empty() && faults.empty()) {
+    collect(faults,
+            [&] { lasting = open_map(settings.map, config, query->columns, "descriptors"); });
+  }
+  if (query && (closing || reference) && !(lasting && lasting->places() > 0) &&
+      validate(config).empty()) {
     check_length(faults, config, query->rows, reference ? reference->rows : query->rows);
   }
   refuse(std::move(faults));
 
-  PlaceMap map(config, {reference ? reference->rows : query->rows, query->columns});
+  PlaceMap map(config, lasting
+                           ? lasting->capacity(query->rows)
+                           : Capacity{reference ? reference->rows : query->rows, query->columns});
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
@@ -138,7 +153,9 @@ void match(const MatchSettings& settings, Faults faults) {
     const std::size_t blank_places = fill_map(map, drive, nullptr, config, mapping);
     tell_blank(settings.reference, blank_places, map.size());
   }
+  if (lasting) lasting->load(map);
   Detector detector(config, map);
+  if (lasting) lasting->begin(map, config, settings.matcher.method);
   MatchList list(config, query->rows);
   Progress progress("matching", query->rows);
   std::size_t blank_frames = 0;
@@ -156,15 +173,23 @@ void match(const MatchSettings& settings, Faults faults) {
     for (const FrameReport& report : std::span(reports).first(taken)) {
       progress.step();
       list.add(report);
+      if (lasting) {
+        lasting->note(detector, report.newest, report.newest,
+                      static_cast<double>(report.newest) / frames_a_second, report.answers);
+      }
     }
   }
-  list.add(detector.finish());
+  const std::span<const Answer> rest = detector.finish();
+  list.add(rest);
+  const auto unsaved = lasting ? lasting->finish(detector, rest) : std::nullopt;
   progress.done();
   list.write(*out);
   out->commit();
   tell_blank(settings.query, blank_frames, query->rows);
   say("{} of {} frames answered, {} of them accepted, in {}", list.size(), query->rows,
       list.accepted(), settings.out.string());
+  if (lasting) say("{}: {}", settings.map.file.string(), lasting->summary());
+  if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
 }
 
 }  // namespace
@@ -180,6 +205,7 @@ Verb match_verb() {
                     "descriptors of the map, .npy [close loops within the query]");
   verb.options.path("query", Access::reads, settings->query, "descriptors of the drive, .npy");
   verb.options.path("out", Access::writes, settings->out, "match list, CSV");
+  add_map_options(verb.options, settings->map);
   add_matcher_options(verb.options, settings->matcher);
   return verb;
 }
