@@ -145,9 +145,9 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                       "describe both with the same model and layer"});
   }
   if (const auto frames = setup.recording ? setup.recording->frame_count() : std::nullopt) {
-    // With places to begin with, none of the drive's own is needed.
+    // Into a map that lasts a drive is added that closes no loop, too.
     MatcherConfig config = setup.config;
-    if (setup.map && setup.map->places() > 0) config.use = Use::localise;
+    if (lasts) config.use = Use::localise;
     check_length(faults, config, *frames, setup.places);
   }
   refuse(std::move(faults));

@@ -137,9 +137,11 @@ void match(const MatchSettings& settings, Faults faults) {
     collect(faults,
             [&] { lasting = open_map(settings.map, config, query->columns, "descriptors"); });
   }
-  if (query && (closing || reference) && !(lasting && lasting->places() > 0) &&
-      validate(config).empty()) {
-    check_length(faults, config, query->rows, reference ? reference->rows : query->rows);
+  if (query && (closing || reference) && validate(config).empty()) {
+    // Into a map that lasts a drive is added that closes no loop, too.
+    MatcherConfig one = config;
+    if (!settings.map.file.empty()) one.use = Use::localise;
+    check_length(faults, one, query->rows, reference ? reference->rows : query->rows);
   }
   refuse(std::move(faults));
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Maps that last, through the real binary.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/oracle.hpp"
+#include "program/program.hpp"
+#include "seqloop/files/npy_file.hpp"
+
+namespace seqloop {
+namespace {
+
+class LastingMaps : public test::Program {
+ protected:
+  void SetUp() override {
+    write("first.npy", oracle::drive(1, 120, 40, 0.2F));
+    write("again.npy", oracle::drive(1, 120, 40, 0.4F));
+    write("other.npy", oracle::drive(2, 90, 40, 0.2F));
+  }
+
+  void write(const std::string& name, const oracle::Vectors& rows) const {
+    files::NpyWriter writer(file(name), rows.front().size());
+    for (const auto& row : rows) writer.append(row);
+    writer.commit();
+  }
+
+  void expect_done(const std::string& arguments) const {
+    const test::Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << '\n' << outcome.err;
+  }
+
+  void expect_refused(const std::string& arguments, const std::string& words) const {
+    const test::Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+
+  [[nodiscard]] std::vector<nlohmann::json> lines(const std::string& name) const {
+    std::istringstream text(test::read_all(file(name)));
+    std::vector<nlohmann::json> all;
+    for (std::string line; std::getline(text, line);) all.push_back(nlohmann::json::parse(line));
+    return all;
+  }
+
+  /// Accepted answers of a run, each checked: it names the session and the frame that it should.
+  [[nodiscard]] std::size_t found(const std::string& name, const std::string& session,
+                                  std::size_t first_place) const {
+    std::size_t matches = 0;
+    for (const auto& line : lines(name)) {
+      for (const auto& answer : line["answers"]) {
+        if (answer["status"] != "match") continue;
+        ++matches;
+        EXPECT_EQ(answer["session"], session);
+        EXPECT_EQ(answer["match"].get<std::size_t>(),
+                  first_place + answer["session_frame"].get<std::size_t>());
+        EXPECT_NEAR(answer["session_frame"].get<double>(), answer["frame"].get<double>(), 2.0);
+      }
+    }
+    return matches;
+  }
+};
+
+TEST_F(LastingMaps, ADriveFindsWhatEarlierRunsHaveSaved) {
+  expect_done("run --source other.npy --map m.seqloop --session other --out o.jsonl");
+  expect_done("run --source first.npy --map m.seqloop --session first --out f.jsonl");
+  EXPECT_EQ(lines("f.jsonl").back()["saved"].is_number(), true);
+  EXPECT_EQ(found("f.jsonl", "", 0), 0U);
+  expect_done("run --source again.npy --map m.seqloop --read-only --out r.jsonl");
+  const std::string before = test::read_all(file("m.seqloop"));
+  EXPECT_GT(found("r.jsonl", "first", 90), 60U);
+  expect_done("match --query again.npy --map m.seqloop --read-only --out m.csv");
+  EXPECT_EQ(test::read_all(file("m.seqloop")), before) << "only read";
+  const test::Outcome last = run("run --source again.npy --map m.seqloop --out l.jsonl");
+  EXPECT_EQ(last.exit_code, 0);
+  EXPECT_NE(last.err.find("330 places now; 120 frames are saved"), std::string::npos) << last.err;
+  EXPECT_GT(found("l.jsonl", "first", 90), 60U);
+}
+
+TEST_F(LastingMaps, AMatchListIsTheSameAsFromTheRun) {
+  expect_done("match --query first.npy --map a.seqloop --out a.csv");
+  expect_done("run --source first.npy --map b.seqloop --out b.jsonl");
+  expect_done("match --query again.npy --map a.seqloop --out a.csv");
+  expect_done("match --query again.npy --map b.seqloop --out b.csv");
+  EXPECT_EQ(test::read_all(file("a.csv")), test::read_all(file("b.csv")));
+  EXPECT_GT(test::read_all(file("a.csv")).size(), 5'000U);
+}
+
+TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
+  const test::Outcome full =
+      run("--version; trap '' XFSZ; ulimit -f 400; '" SEQLOOP_BINARY
+          "' run --source first.npy --map m.seqloop --pace live --fps 200 --save-every-s 0.1");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.err.find("not all of the drive is saved"), std::string::npos) << full.err;
+  EXPECT_NE(full.out.find("\"newest\":119,"), std::string::npos) << "the run went on";
+  // What had been saved is there, and the rest has room again.
+  expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
+}
+
+TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {
+  expect_refused("run --source first.npy --map none.seqloop --read-only", "none.seqloop");
+  EXPECT_FALSE(exists("none.seqloop"));
+  expect_refused("run --source first.npy --read-only", "there is no map");
+  expect_refused("run --source first.npy --map m.seqloop --reference other.npy", "two maps");
+  expect_refused("run --source first.npy --map m.seqloop --save-every-s 0", "save-every-s");
+  expect_refused("match --query first.npy --map first.npy --out m.csv", "first.npy");
+  expect_done("match --query first.npy --map m.seqloop --session one --out m.csv");
+  expect_refused("match --query again.npy --map m.seqloop --session one --out m.csv", "'one'");
+  expect_refused("match --query again.npy --map m.seqloop --arithmetic float --out m.csv",
+                 "float euclidean");
+  expect_refused("run --source again.npy --map m.seqloop --max-places 100", "120 places already");
+}
+
+}  // namespace
+}  // namespace seqloop
