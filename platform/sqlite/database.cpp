@@ -96,10 +96,10 @@ bool Statement::step() {
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
-  const DatabaseError error(sqlite3_extended_errcode(database_->handle()),
-                            sqlite3_errmsg(database_->handle()));
+  const int extended = sqlite3_extended_errcode(database_->handle());
+  const std::string message = sqlite3_errmsg(database_->handle());
   sqlite3_reset(statement_);
-  throw error;
+  throw DatabaseError(extended, message);
 }
 
 std::span<const std::byte> Statement::blob(int column) const {

@@ -37,9 +37,9 @@ std::optional<std::uint64_t> take_varint(Bytes& from) {
   return std::nullopt;
 }
 
-std::size_t bytes_of(std::uint64_t type) {
+std::uint64_t bytes_of(std::uint64_t type) {
   constexpr std::array<std::uint8_t, 12> sizes{0, 1, 2, 3, 4, 6, 8, 8, 0, 0, 0, 0};
-  return type < sizes.size() ? sizes[type] : static_cast<std::size_t>((type - 12) / 2);
+  return type < sizes.size() ? sizes[static_cast<std::size_t>(type)] : (type - 12) / 2;
 }
 
 RawValue value_of(std::uint64_t type, Bytes bytes) {
@@ -65,8 +65,8 @@ bool split(Bytes payload, std::vector<RawValue>& columns) {
   while (!types.empty()) {
     const std::optional<std::uint64_t> type = take_varint(types);
     if (!type || *type == 10 || *type == 11 || columns.size() == most_columns) return false;
-    const std::size_t size = bytes_of(*type);
-    if (size > values.size()) return false;
+    if (bytes_of(*type) > values.size()) return false;
+    const auto size = static_cast<std::size_t>(bytes_of(*type));
     columns.push_back(value_of(*type, values.first(size)));
     values = values.subspan(size);
   }
@@ -95,7 +95,7 @@ void RawRows::each(const Take& take) {
     loaded_ = number;
     const std::size_t header = number == 1 ? file_header : 0;
     if (page_[header] != leaf_of_table) continue;
-    const std::size_t cells = big_endian(Bytes(page_).subspan(header + 3, 2));
+    const auto cells = static_cast<std::size_t>(big_endian(Bytes(page_).subspan(header + 3, 2)));
     for (std::size_t i = 0; i < cells; ++i) {
       const std::size_t pointer = header + 8 + 2 * i;
       if (pointer + 2 > size_) break;

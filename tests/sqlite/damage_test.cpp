@@ -204,7 +204,9 @@ std::set<std::uint64_t> recovered(const fs::path& file, const fs::path& out) {
   return numbers;
 }
 
-TEST(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
+class MapDamage : public testing::TestWithParam<unsigned> {};
+
+TEST_P(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
   const test::RecordingVfs fast("nothing");
   const Sample sample;
   ASSERT_EQ(sample.fault(), "");
@@ -222,7 +224,7 @@ TEST(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
     sqlite3_close(database);
     foreign = test::read_all(path);
   }
-  std::mt19937_64 random(14);
+  std::mt19937_64 random(GetParam());
   std::size_t named = 0;
   for (std::size_t i = 0; i < SEQLOOP_DAMAGED_FILES && !testing::Test::HasFailure(); ++i) {
     const test::TemporaryFolder folder(in_memory());
@@ -250,7 +252,9 @@ TEST(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
   EXPECT_GT(named, static_cast<std::size_t>(SEQLOOP_DAMAGED_FILES) / 2);
 }
 
-TEST(MapDamage, ForeignFilesAreNoMaps) {
+INSTANTIATE_TEST_SUITE_P(Seeds, MapDamage, testing::Range(1U, 11U));
+
+TEST(MapRecovery, NeedsAMap) {
   const test::TemporaryFolder folder(in_memory());
   const std::string refused = test::setup_error([&] {
     (void)sqlite::recover(folder.write("text", std::string(50'000, 'x')), folder.path() / "out");
@@ -259,7 +263,7 @@ TEST(MapDamage, ForeignFilesAreNoMaps) {
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
-TEST(MapDamage, TheLogIsRecoveredWithTheFile) {
+TEST(MapRecovery, TakesTheLogWithTheFile) {
   const test::TemporaryFolder folder(in_memory());
   const fs::path file = folder.path() / "map.seqloop";
   const fs::path killed = folder.path() / "killed.seqloop";

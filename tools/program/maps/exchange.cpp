@@ -102,10 +102,10 @@ void check_cells(const fs::path& file, const std::vector<std::vector<std::string
 std::vector<std::byte> bytes_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
-  std::vector<std::byte> bytes(fs::file_size(file, error));
-  if (!stream || error ||
-      !stream.read(reinterpret_cast<char*>(bytes.data()),
-                   static_cast<std::streamsize>(bytes.size()))) {
+  const std::uintmax_t size = fs::file_size(file, error);
+  std::vector<std::byte> bytes(error ? 0 : static_cast<std::size_t>(size));
+  if (error || !stream.read(reinterpret_cast<char*>(bytes.data()),
+                            static_cast<std::streamsize>(bytes.size()))) {
     throw SetupError(
         {file.string(), "cannot be read", "name a folder that `seqloop map export` wrote"});
   }
