@@ -14,6 +14,7 @@
 #include "program/bench/contender.hpp"
 #include "program/bench/describe_bench.hpp"
 #include "program/bench/fastest_read.hpp"
+#include "program/bench/open_bench.hpp"
 #include "program/bench/search_bench.hpp"
 #include "program/bench/step_bench.hpp"
 #include "program/drives/drives.hpp"
@@ -37,7 +38,7 @@ struct BenchSettings {
   DriveSettings drive;
 };
 
-constexpr std::array whats{"describe", "step", "search", "column", "matrix", "loop", "memory"};
+constexpr std::array whats{"describe", "step", "search", "column", "matrix", "loop", "memory", "open"};
 
 // Products of two drives: beyond these they take minutes.
 constexpr std::size_t most_matrix_places = 20'000;
@@ -73,6 +74,7 @@ std::vector<Contender> timed(const BenchSettings& settings, const Peers& peers) 
     }
     if (asked("search")) time_search(places, settings.ds, settings.rounds, all);
     if (asked("step")) time_steps(size, settings.ds, settings.rounds, all);
+    if (asked("open")) time_opening(size, settings.rounds, all);
     if (asked("loop")) time_loop(places, settings.ds, settings.rounds, all);
     if (asked("matrix")) {
       if (places > most_matrix_places) {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "program/bench/open_bench.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "program/process/available_memory.hpp"
+#include "program/process/say.hpp"
+#include "seqloop/sqlite/map_file.hpp"
+
+namespace seqloop::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t places_a_batch = 250;  // ten seconds of driving; 25 read as fast
+
+/// A folder of its own, removed with what is in it.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "seqloop-bench-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  Folder(Folder&&) = delete;
+  Folder& operator=(Folder&&) = delete;
+  ~Folder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  [[nodiscard]] fs::path file() const { return path_ / "map.seqloop"; }
+
+ private:
+  fs::path path_;
+};
+
+void write(const fs::path& file, const Capacity& size) {
+  sqlite::MapFile map = sqlite::MapFile::open(
+      file, sqlite::MapForm{"bench", "bench", size.descriptor_size, size.descriptor_size});
+  const std::int64_t session = map.begin_session("bench", 0, "");
+  std::vector<std::byte> places(places_a_batch * size.descriptor_size);
+  std::vector<sqlite::PlaceRecord> records(places_a_batch);
+  std::uint32_t state = 1;
+  for (std::size_t first = 0; first < size.places; first += places_a_batch) {
+    const std::size_t count = std::min(places_a_batch, size.places - first);
+    for (std::byte& byte : places) {
+      state = state * 1664525U + 1013904223U;
+      byte = static_cast<std::byte>(state >> 24U);
+    }
+    for (std::size_t i = 0; i < count; ++i) records[i] = {first + i, first + i, 0};
+    map.save(session, {.frames = first + count,
+                       .records = std::span(records).first(count),
+                       .places = std::span(places).first(count * size.descriptor_size)});
+  }
+}
+
+/// Has the system forget what it keeps of a file, as far as it does.
+void drop(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  (void)::fdatasync(descriptor);
+  (void)::posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
+  ::close(descriptor);
+}
+
+void read_plainly(const fs::path& file, std::vector<std::byte>& piece) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  while (::read(descriptor, piece.data(), piece.size()) > 0) {
+  }
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void time_opening(const Capacity& size, std::size_t rounds, std::vector<Contender>& timed) {
+  const std::uint64_t bytes = std::uint64_t{size.places} * size.descriptor_size;
+  if (!fits_memory(bytes, "open")) return;
+  const Folder folder;
+  const fs::path file = folder.file();
+  say("open: writing {} MB to {}", bytes / 1'000'000, file.string());
+  write(file, size);
+  std::vector<std::byte> memory(static_cast<std::size_t>(bytes));
+  std::vector<std::byte> piece(std::size_t{1} << 20U);
+  const auto open = [&] {
+    auto to = memory.begin();
+    sqlite::MapFile::read_only(file).read(
+        [&to](const sqlite::PlaceBlock& block) { to = std::ranges::copy(block.places, to).out; });
+  };
+  const auto forget = [&file] { drop(file); };
+  std::vector<Contender> contenders;
+  contenders.push_back({"open", "seqloop-map-file", size.places, size.descriptor_size,
+                        fs::file_size(file), open, forget});
+  contenders.push_back({"open", "plain-read", size.places, size.descriptor_size,
+                        fs::file_size(file), [&] { read_plainly(file, piece); }, forget});
+  time_in_turn(std::move(contenders), rounds, timed, {1, 1});
+}
+
+}  // namespace seqloop::program
