@@ -155,8 +155,16 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                "a- and o-seqcnnslam: scan a part of the map at every frame, never search all of it "
                "[on; off under --paper]",
                [&settings](std::string_view value) { settings.relocalise = parse_on_off(value); }});
-  options.count("slice", config.relocalising.rows_scanned,
-                "places of the map that a frame scans to relocalise [4096]");
+  options.add({"slice", ValueKind::count,
+               "places of the map that a frame scans to relocalise [4096, or as many as "
+               "--relocalise-s takes]",
+               [&settings](std::string_view value) {
+                 settings.config.relocalising.rows_scanned = parse_count(value);
+                 settings.slice_given = true;
+               }});
+  options.number(
+      "relocalise-s", settings.relocalise_s,
+      "seconds of driving, at 25 frames a second, in which the whole map is scanned [1]");
   options.count("distances", config.relocalising.distances,
                 "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
   options.section("Decision");
@@ -183,6 +191,18 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "rows around the best that cannot be the runner-up [10]");
 }
 
+void suit_slice(MatcherConfig& config, const MatcherSettings& settings,
+                std::size_t places) noexcept {
+  if (settings.slice_given) return;
+  constexpr double frames_a_second = 25.0;
+  // 12.8 MB: 4 ms where memory gives 3.2 GB a second.
+  constexpr std::size_t most = 400'000;
+  const auto frames =
+      static_cast<std::size_t>(std::clamp(settings.relocalise_s * frames_a_second, 1.0, 1e6));
+  config.relocalising.rows_scanned =
+      std::clamp((places + frames - 1) / frames, config.relocalising.rows_scanned, most);
+}
+
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.push_back(method.name);
@@ -207,6 +227,7 @@ MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults) 
                                                                              : Arithmetic::int8);
   config.relocalising.on = settings.relocalise.value_or(!settings.paper);
   resolve_decision(settings, config, faults);
+  if (!(settings.relocalise_s > 0.0)) faults.push_back({"relocalise-s", "it must be above 0"});
   if (settings.method == "single") {
     config.sequence_length = 0;
     if (settings.ds_given)

@@ -138,6 +138,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   choose_places(setup, settings, given ? setup.reference.get() : setup.recording.get(),
                 given ? settings.reference : settings.source);
   if (lasts) open_map(setup, settings, drive, faults);
+  suit_slice(setup.config, settings.matcher, setup.places);
   if (setup.reference && size_of(setup.reference.get()) != setup.descriptor_size) {
     faults.push_back({"reference, source",
                       fmt::format("descriptors of {} and of {} values",

@@ -145,9 +145,11 @@ void match(const MatchSettings& settings, Faults faults) {
   }
   refuse(std::move(faults));
 
-  PlaceMap map(config, lasting
-                           ? lasting->capacity(query->rows)
-                           : Capacity{reference ? reference->rows : query->rows, query->columns});
+  const Capacity capacity =
+      lasting ? lasting->capacity(query->rows)
+              : Capacity{reference ? reference->rows : query->rows, query->columns};
+  suit_slice(config, settings.matcher, capacity.places);
+  PlaceMap map(config, capacity);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();

@@ -25,8 +25,9 @@ void print_buffers(const char* owner, const std::vector<BufferSize>& buffers) {
 }
 
 void plan(const PlanSettings& settings, Faults faults) {
-  const MatcherConfig config =
+  MatcherConfig config =
       resolve(settings.matcher, settings.close_loops ? Use::close_loops : Use::localise, faults);
+  suit_slice(config, settings.matcher, settings.places);
   const Capacity capacity{settings.places, settings.descriptor_size};
   for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
   refuse(std::move(faults));
