@@ -65,6 +65,12 @@ class Remains {
   std::map<std::int64_t, RawPlace> thumbnails;
   std::set<std::uint64_t> removed;
 
+  [[nodiscard]] std::size_t blocks() const {
+    std::size_t count = 0;
+    for (const auto& [id, session] : sessions) count += session.blocks.size();
+    return count;
+  }
+
   void read_block(const RawPlace& place, const std::function<void(const BlockRow&)>& take) {
     rows_.again(place,
                 [&](const RawPlace&, std::int64_t id, const Columns& c) { take(block_of(id, c)); });
@@ -289,9 +295,11 @@ Recovered recover(const fs::path& in, const fs::path& out) {
   }
   try {
     const WithLog file(in, out);
-    auto remains = std::make_unique<Remains>(file.path(), page_size_of(file.path()));
-    if (remains->sessions.empty()) {
-      remains = std::make_unique<Remains>(file.path(), static_cast<std::size_t>(page_size));
+    auto remains = std::make_unique<Remains>(file.path(), static_cast<std::size_t>(page_size));
+    // What the file says of its pages may itself be damaged: what finds more is right.
+    if (const std::size_t said = page_size_of(file.path()); said != page_size) {
+      auto others = std::make_unique<Remains>(file.path(), said);
+      if (others->blocks() > remains->blocks()) remains = std::move(others);
     }
     const bool unknown = !remains->form;
     if (unknown && remains->form_of_blocks) {
