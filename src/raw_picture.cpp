@@ -13,6 +13,14 @@ std::string_view name(RawFormat format) noexcept {
       return "BGR3";
     case RawFormat::rgb8:
       return "RGB3";
+    case RawFormat::bgra8:
+      return "BGRA";
+    case RawFormat::rgba8:
+      return "RGBA";
+    case RawFormat::gray16:
+      return "Y16";
+    case RawFormat::gray16be:
+      return "Y16 big-endian";
     case RawFormat::yuyv:
       return "YUYV";
     case RawFormat::uyvy:
@@ -23,6 +31,8 @@ std::string_view name(RawFormat format) noexcept {
       return "YU12";
     case RawFormat::mjpg:
       return "MJPG";
+    case RawFormat::png:
+      return "PNG";
   }
   return "?";
 }
@@ -36,11 +46,17 @@ std::size_t row_bytes(RawFormat format, int width) noexcept {
       return pixels;
     case RawFormat::yuyv:
     case RawFormat::uyvy:
+    case RawFormat::gray16:
+    case RawFormat::gray16be:
       return pixels * 2;
     case RawFormat::bgr8:
     case RawFormat::rgb8:
       return pixels * 3;
+    case RawFormat::bgra8:
+    case RawFormat::rgba8:
+      return pixels * 4;
     case RawFormat::mjpg:
+    case RawFormat::png:
       break;
   }
   return 0;
@@ -54,6 +70,7 @@ std::size_t bytes_of(RawFormat format, std::size_t stride, int height) noexcept 
     case RawFormat::yu12:
       return stride * rows + 2 * (stride / 2) * ((rows + 1) / 2);
     case RawFormat::mjpg:
+    case RawFormat::png:
       return 0;
     default:
       return stride * rows;

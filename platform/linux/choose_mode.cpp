@@ -23,7 +23,7 @@ double weight(RawFormat format, bool colour) noexcept {
       return 3.0;
     case RawFormat::rgb8:
       return colour ? 6.0 : 3.0;
-    case RawFormat::mjpg:
+    default:  // mjpg; the others are of no camera here
       break;
   }
   return colour ? 20.0 : 12.0;

@@ -5,18 +5,13 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <new>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "opencv/detail/natural_order.hpp"
-#include "opencv/detail/one_line.hpp"
-#include "opencv/detail/picture_file.hpp"
-#include "opencv/detail/picture_view.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/opencv/picture_file_decoder.hpp"
 
 namespace seqloop::opencv {
 namespace {
@@ -27,7 +22,6 @@ constexpr std::array<std::string_view, 9> extensions{".jpg", ".jpeg", ".png",  "
                                                      ".ppm", ".tif",  ".tiff", ".webp"};
 constexpr std::uintmax_t most_file_bytes = std::uintmax_t{1} << 30;
 constexpr std::size_t most_named = 3;  // files that a note names before it says "..."
-constexpr std::string_view unreadable = "the file is no readable picture";
 
 struct Listing {
   std::vector<std::string> pictures;
@@ -70,20 +64,6 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
-/// Turns a picture as EXIF's orientation says. @param orientation 2 to 8
-void turn(const cv::Mat& picture, int orientation, cv::Mat& turned) {
-  constexpr int top_bottom = 0;
-  constexpr int left_right = 1;
-  constexpr int both = -1;
-  const bool sideways = orientation >= 5;
-  if (sideways) cv::transpose(picture, turned);
-  if (orientation == 5) return;
-  const bool half_turn = orientation == 3 || orientation == 7;
-  const bool mirrored = orientation == 2 || orientation == 6;
-  cv::flip(sideways ? turned : picture, turned,
-           half_turn ? both : (mirrored ? left_right : top_bottom));
-}
-
 }  // namespace
 
 bool has_image_extension(const std::filesystem::path& path) {
@@ -99,9 +79,8 @@ class ImageFolderSource::Impl {
   Impl(fs::path folder, bool gray, double frames_per_second, std::unique_ptr<PictureDecoder> jpeg)
       : folder_(std::move(folder)),
         listing_(list_folder(folder_)),
-        flags_(gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR),
-        frames_per_second_(frames_per_second),
-        jpeg_(std::move(jpeg)) {
+        decoder_(gray, std::move(jpeg)),
+        frames_per_second_(frames_per_second) {
     if (!std::isfinite(frames_per_second_) || frames_per_second_ <= 0.0)
       throw SetupError(Fault{"frame rate", "is not a positive number"});
   }
@@ -159,42 +138,7 @@ class ImageFolderSource::Impl {
     stream.read(static_cast<char*>(static_cast<void*>(file_.data())),
                 static_cast<std::streamsize>(file_.size()));
     if (!stream) return "the file cannot be read";
-    const PictureFile seen = look_at(file_);
-    if (!seen.fault.empty()) return std::string(seen.fault);
-    const auto no_memory = [&](const std::string& why) {
-      return "there is not enough memory for " +
-             (seen.width > 0 ? "a picture of " + size_text(seen.width, seen.height)
-                             : "the picture" + why);
-    };
-    try {
-      // Four inks are OpenCV's business.
-      return jpeg_ && seen.jpeg && seen.components != 4 ? decode_jpeg(seen.orientation, image)
-                                                        : decode(image);
-    } catch (const cv::Exception& failure) {  // sizes that OpenCV refuses
-      if (failure.code == cv::Error::StsNoMem) return no_memory(" (" + one_line(failure.err) + ")");
-    } catch (const std::bad_alloc&) {
-      return no_memory("");
-    }
-    return std::string(unreadable);
-  }
-
-  [[nodiscard]] std::string decode(Image& image) {
-    // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
-    picture_.release();
-    picture_ = cv::imdecode(file_, flags_);
-    if (picture_.empty()) return std::string(unreadable);
-    image = view(picture_);
-    return {};
-  }
-
-  [[nodiscard]] std::string decode_jpeg(int orientation, Image& image) {
-    const std::string_view fault =
-        jpeg_->decode({.bytes = file_, .format = RawFormat::mjpg}, image);
-    if (!fault.empty()) return std::string(fault);
-    if (orientation == 1) return {};
-    turn(matrix(image), orientation, picture_);
-    image = view(picture_);
-    return {};
+    return std::string(decoder_.decode({.bytes = file_}, image));
   }
 
   void count_size(const std::string& name, const Image& image) {
@@ -207,12 +151,10 @@ class ImageFolderSource::Impl {
 
   fs::path folder_;
   Listing listing_;
-  int flags_;
+  PictureFileDecoder decoder_;
   double frames_per_second_;
-  std::unique_ptr<PictureDecoder> jpeg_;
   std::size_t next_ = 0;
   std::vector<std::uint8_t> file_;
-  cv::Mat picture_;
   std::string fault_;
   std::string first_size_;
   std::size_t odd_sizes_ = 0;

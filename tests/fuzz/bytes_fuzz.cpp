@@ -42,7 +42,7 @@ void decode_raw(Bytes bytes) {
   static opencv::RawDecoder colour(false);
   if (bytes.size() < 4) return;
   RawPicture raw;
-  raw.format = static_cast<RawFormat>(bytes[0] % 8);
+  raw.format = static_cast<RawFormat>(bytes[0] % 13);
   raw.width = bytes[1];
   raw.height = bytes[2];
   raw.stride = static_cast<std::size_t>(raw.width) * (bytes[3] % 4) + bytes[3] / 4;

@@ -14,7 +14,7 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
            "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
 
 # The outside worlds, and our own rooms that none of them may look into.
-WORLDS = {"files", "linux", "opencv", "sqlite", "turbojpeg"}
+WORLDS = {"bags", "files", "linux", "opencv", "sqlite", "turbojpeg"}
 OURS = {"seqloop", "evaluation", "experiment", "program", "street", "synthetic"}
 
 # Rooms of tools/, and the others that each looks into.
@@ -28,8 +28,9 @@ INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}
 # All that needs Eigen; the rest of the algorithm is built without it.
 EIGENVECTORS = ("src", "principal_components.cpp")
 
-# Libraries that belong to one outside world.
-LIBRARIES = {"opencv2": "opencv", "sqlite3.h": "sqlite", "turbojpeg.h": "turbojpeg"}
+# Libraries, and the outside worlds that they belong to.
+LIBRARIES = {"lz4frame.h": {"bags"}, "opencv2": {"opencv"}, "sqlite3.h": {"bags", "sqlite"},
+             "turbojpeg.h": {"turbojpeg"}, "zstd.h": {"bags"}}
 
 
 def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
@@ -54,7 +55,7 @@ def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
             return False
         if quoted or world in WORLDS or world in OURS:
             return world in ("seqloop", file.parts[1])
-        return world not in LIBRARIES or LIBRARIES[world] == file.parts[1]
+        return world not in LIBRARIES or file.parts[1] in LIBRARIES[world]
     if room == "tools" and file.parts[1] in TOOLS and path[0] in TOOLS:
         return path[0] == file.parts[1] or path[0] in TOOLS[file.parts[1]]
     return True

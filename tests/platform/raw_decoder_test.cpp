@@ -17,14 +17,26 @@ namespace {
 
 using Pixel = std::array<double, 3>;  // B, G, R
 
-constexpr std::array all_formats{RawFormat::gray8, RawFormat::bgr8, RawFormat::rgb8,
-                                 RawFormat::yuyv,  RawFormat::uyvy, RawFormat::nv12,
-                                 RawFormat::yu12};
+constexpr std::array all_formats{RawFormat::gray8,  RawFormat::bgr8,    RawFormat::rgb8,
+                                 RawFormat::yuyv,   RawFormat::uyvy,    RawFormat::nv12,
+                                 RawFormat::yu12,   RawFormat::bgra8,   RawFormat::rgba8,
+                                 RawFormat::gray16, RawFormat::gray16be};
+
+bool is_gray(RawFormat format) {
+  return format == RawFormat::gray8 || format == RawFormat::gray16 || format == RawFormat::gray16be;
+}
+
+/// Whether blue, green and red stand side by side; and in how many bytes.
+std::size_t colour_bytes(RawFormat format) {
+  if (format == RawFormat::bgr8 || format == RawFormat::rgb8) return 3;
+  return format == RawFormat::bgra8 || format == RawFormat::rgba8 ? 4 : 0;
+}
 
 std::size_t shortest_stride(RawFormat format, int width) {
   const auto pixels = static_cast<std::size_t>(width);
-  if (format == RawFormat::bgr8 || format == RawFormat::rgb8) return 3 * pixels;
-  return format == RawFormat::yuyv || format == RawFormat::uyvy ? 2 * pixels : pixels;
+  if (colour_bytes(format) > 0) return colour_bytes(format) * pixels;
+  const bool pairs = format == RawFormat::yuyv || format == RawFormat::uyvy;
+  return pairs || (is_gray(format) && format != RawFormat::gray8) ? 2 * pixels : pixels;
 }
 
 /// A picture of noise, and what its pixels are by the definition of its format.
@@ -44,8 +56,9 @@ struct Noise {
 
   [[nodiscard]] double luma(std::size_t x, std::size_t y) const {
     const std::size_t row = y * raw.stride;
-    if (raw.format == RawFormat::yuyv) return at(row + 2 * x);
-    if (raw.format == RawFormat::uyvy) return at(row + 2 * x + 1);
+    if (raw.format == RawFormat::yuyv || raw.format == RawFormat::gray16be) return at(row + 2 * x);
+    if (raw.format == RawFormat::uyvy || raw.format == RawFormat::gray16)
+      return at(row + 2 * x + 1);
     return at(row + x);
   }
 
@@ -71,9 +84,11 @@ struct Noise {
 
   /// BT.601, Y of 16..235.
   [[nodiscard]] Pixel colour(std::size_t x, std::size_t y) const {
-    const std::size_t place = y * raw.stride + 3 * x;
-    if (raw.format == RawFormat::bgr8) return {at(place), at(place + 1), at(place + 2)};
-    if (raw.format == RawFormat::rgb8) return {at(place + 2), at(place + 1), at(place)};
+    const std::size_t place = y * raw.stride + colour_bytes(raw.format) * x;
+    if (raw.format == RawFormat::bgr8 || raw.format == RawFormat::bgra8)
+      return {at(place), at(place + 1), at(place + 2)};
+    if (raw.format == RawFormat::rgb8 || raw.format == RawFormat::rgba8)
+      return {at(place + 2), at(place + 1), at(place)};
     const double light = 1.164 * std::max(luma(x, y) - 16.0, 0.0);
     const auto [u, v] = chroma(x, y);
     const auto clamped = [](double value) { return std::clamp(value, 0.0, 255.0); };
@@ -83,7 +98,7 @@ struct Noise {
   }
 
   [[nodiscard]] double gray(std::size_t x, std::size_t y) const {
-    if (raw.format != RawFormat::bgr8 && raw.format != RawFormat::rgb8) return luma(x, y);
+    if (colour_bytes(raw.format) == 0) return luma(x, y);
     const auto [b, g, r] = colour(x, y);
     return 0.114 * b + 0.587 * g + 0.299 * r;
   }
@@ -101,7 +116,7 @@ void expect_gray(const Image& image, const Noise& noise) {
   ASSERT_EQ(image.format, PixelFormat::gray8);
   ASSERT_EQ(image.width, noise.raw.width);
   ASSERT_EQ(image.height, noise.raw.height);
-  const bool rounds = noise.raw.format == RawFormat::bgr8 || noise.raw.format == RawFormat::rgb8;
+  const bool rounds = colour_bytes(noise.raw.format) > 0;
   for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y)
     for (std::size_t x = 0; x < static_cast<std::size_t>(image.width); ++x)
       ASSERT_NEAR(image.data[y * image.stride + x], noise.gray(x, y), rounds ? 1.0 : 0.0)
@@ -138,7 +153,7 @@ TEST(RawDecoder, GrayIsLumaAtEverySizeAndStride) {
 TEST(RawDecoder, ColourIsBt601AtEverySizeAndStride) {
   RawDecoder decoder(false);
   for (const RawFormat format : all_formats) {
-    if (format == RawFormat::gray8) continue;
+    if (is_gray(format)) continue;
     for (const auto& [width, height] :
          {std::pair(2, 2), std::pair(4, 6), std::pair(64, 48), std::pair(66, 2)}) {
       for (const std::size_t padding : {0U, 1U, 6U, 64U}) {
@@ -228,6 +243,7 @@ TEST(RawDecoder, WhatIsWrongIsSaid) {
                "has more than the 6144 bytes");
   expect_fault(changed([](Raw& raw) { raw.width = 63; }), "odd size");
   expect_fault(changed([](Raw& raw) { raw.format = RawFormat::mjpg; }), "MJPG");
+  expect_fault(changed([](Raw& raw) { raw.format = RawFormat::png; }), "PNG");
   const Noise odd(RawFormat::nv12, 64, 47, 0);
   expect_fault(odd.raw, "odd size");
   for (const RawFormat format : {RawFormat::nv12, RawFormat::yu12}) {

@@ -75,11 +75,14 @@ int run(const Options& options, const Job& job) {
     render_drive(reference, "reference", job, folder, progress);
     render_drive(query, "query", job, folder, progress);
     write_truth(folder / "truth.csv", localise_truth(query, reference));
+    write_poses(folder / "reference.csv", reference);
+    write_poses(folder / "query.csv", query);
   } else {
     Progress progress(job.frames, options.quiet);
     const Drive drive(street, loop_plan(job));
     render_drive(drive, "drive", job, folder, progress);
     write_truth(folder / "truth.csv", loop_truth(drive));
+    write_poses(folder / "drive.csv", drive);
   }
   staging.commit(job.parameters);
   return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "output.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -109,6 +110,19 @@ void write_truth(const fs::path& file, const std::vector<TruthRow>& rows) {
   std::string text = "query,reference\n";
   for (const TruthRow& row : rows) {
     text += std::to_string(row.query) + ',' + std::to_string(row.reference) + '\n';
+  }
+  write_file(file, text);
+}
+
+void write_poses(const fs::path& file, const Drive& drive) {
+  std::string text = "frame,street_m,left_m,height_m,yaw_rad,pitch_rad,roll_rad\n";
+  for (std::size_t i = 0; i < drive.frames(); ++i) {
+    const Shot shot = drive.shot(i);
+    std::array<char, 200> row{};
+    const int size =
+        std::snprintf(row.data(), row.size(), "%zu,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f\n", i,
+                      drive.street(i), shot.lateral, shot.height, shot.yaw, shot.pitch, shot.roll);
+    text.append(row.data(), static_cast<std::size_t>(size));
   }
   write_file(file, text);
 }

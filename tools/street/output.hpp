@@ -31,6 +31,10 @@ std::unique_ptr<FrameSink> open_sink(const std::filesystem::path& folder, const 
 /// Writes query,reference rows below a header.
 void write_truth(const std::filesystem::path& file, const std::vector<TruthRow>& rows);
 
+/// Writes where the camera of each frame was: metres along the street, to the left of its middle
+/// and above it; radians left of its direction, up, and clockwise.
+void write_poses(const std::filesystem::path& file, const Drive& drive);
+
 /// Writes text to a file, all of it or an exception.
 void write_file(const std::filesystem::path& file, const std::string& text);
 

@@ -2,12 +2,16 @@
 #include "program/drives/drives.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "program/drives/file_decoder.hpp"
 #include "program/options/model_options.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/bags/bag.hpp"
+#include "seqloop/bags/bag_source.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/source.hpp"
@@ -105,6 +109,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
                    throw std::invalid_argument("it must be between 0.001 and 1000000");
                  }
                }});
+  options.text("topic", settings.topic, "of a bag: which pictures [the only topic that has any]");
 }
 
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
@@ -118,14 +123,27 @@ bool is_described(const std::filesystem::path& path) { return path.extension() =
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const std::string& flag,
                                         const DriveSettings& settings) {
   if (path.empty()) {
-    throw SetupError({flag, "not given", "an image folder, a video or an .npy file"});
+    throw SetupError({flag, "not given", "an image folder, a video, a bag or an .npy file"});
   }
   if (is_described(path)) {
     return std::make_unique<files::DescriptorSource>(read_descriptors(path, settings.difference),
                                                      settings.fps);
   }
+  if (bags::is_bag(path)) {
+    return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
+  }
   return opencv::open_source(path, {.frames_per_second = settings.fps,
                                     .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false)});
+}
+
+std::int64_t start_ns(const FrameSource* recording) noexcept {
+  using std::chrono::nanoseconds;
+  if (recording == nullptr) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<nanoseconds>(now).count();
+  }
+  const auto* bag = dynamic_cast<const bags::BagSource*>(recording);
+  return bag == nullptr ? 0 : bag->start_ns();
 }
 
 void tell_notes(const std::filesystem::path& path, const FrameSource& source) {

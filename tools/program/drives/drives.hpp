@@ -27,6 +27,7 @@ struct DriveSettings {
   std::optional<std::size_t> words;              ///< of the vocabulary [500]
   std::optional<std::size_t> remove_components;  ///< Change Removal [0, off]
   double fps = 10.0;
+  std::string topic;                              ///< of bags; empty: the only one with pictures
   Difference difference = Difference::euclidean;  ///< how described drives will be compared
 };
 
@@ -54,7 +55,7 @@ void check_describer(const DriveSettings& settings, bool training_given);
 /// by its files' bytes, what was learnt by where it was learnt. Throws SetupError.
 [[nodiscard]] std::string fingerprint(const DriveSettings& settings);
 
-/// Opens an image folder, a video or an `.npy` file. Throws SetupError.
+/// Opens an image folder, a video, a bag or an `.npy` file. Throws SetupError.
 /// @param flag the flag that names the drive, for the message when it was not given
 [[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                                       const std::string& flag,
@@ -67,6 +68,10 @@ void check_describer(const DriveSettings& settings, bool training_given);
 
 /// Whether a drive was described before, so that no describer is needed.
 [[nodiscard]] bool is_described(const std::filesystem::path& path);
+
+/// When second 0 of a drive was, in nanoseconds since 1970: a bag says it; a camera's is now; that
+/// of other recordings is not known, and 0. @param recording null: a camera
+[[nodiscard]] std::int64_t start_ns(const FrameSource* recording) noexcept;
 
 /// Tells the user, on stderr, what the source has to say of itself.
 void tell_notes(const std::filesystem::path& path, const FrameSource& source);

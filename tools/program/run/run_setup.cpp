@@ -103,6 +103,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   const bool lasts = !settings.map.file.empty();
   const bool closing = settings.reference.empty() && !settings.map.read_only;
   check(settings.map, !settings.reference.empty(), faults);
+  setup.loops = std::make_unique<LoopOutputs>(settings.loops, closing, faults);
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);
@@ -152,6 +153,8 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     check_length(faults, config, *frames, setup.places);
   }
   refuse(std::move(faults));
+  setup.loops->begin(settings.loops, settings.source, setup.recording.get(),
+                     setup.config.sequence_length + 1);
   return setup;
 }
 

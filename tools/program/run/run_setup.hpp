@@ -13,6 +13,7 @@
 #include "program/options/loop_options.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/options/real_time_options.hpp"
+#include "program/run/loop_outputs.hpp"
 #include "seqloop/budget.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/linux/live_source.hpp"
@@ -31,6 +32,7 @@ struct RunSettings {
   std::filesystem::path out = "-";
   std::filesystem::path pictures;
   std::filesystem::path summary;
+  LoopOutputSettings loops;
   Pace pace = Pace::max;
   std::size_t frames = 0;      ///< 0: all
   std::size_t max_places = 0;  ///< 0: as many as the drive has
@@ -56,6 +58,7 @@ struct RunSetup {
   std::unique_ptr<LastingMap> map;         ///< none unless asked for
   std::unique_ptr<files::OutputFile> out;
   std::unique_ptr<files::OutputFile> summary;  ///< none unless asked for
+  std::unique_ptr<LoopOutputs> loops;
   std::size_t descriptor_size = 0;
   std::size_t places = 0;
   std::size_t sessions = 1;

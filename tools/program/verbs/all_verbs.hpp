@@ -23,6 +23,7 @@ using ExperimentRunner =
 [[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb stills_verb();
 [[nodiscard]] Verb camera_verb();
+[[nodiscard]] Verb bag_verb();
 [[nodiscard]] Verb map_verb();
 
 /// All that the program offers.

@@ -73,7 +73,7 @@ Verb describe_verb() {
       }};
   verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
-                    "camera (/dev/video0, until interrupted), image folder or video file");
+                    "camera (/dev/video0, until interrupted), image folder, video file or bag");
   verb.options.path("out", Access::writes, settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");

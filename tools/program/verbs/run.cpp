@@ -140,6 +140,7 @@ void run(const RunSettings& settings, Faults faults) {
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     attempt([&] { lines.add(*processed, state); });
+    attempt([&] { setup.loops->add(*processed); });
     if (unwritten) break;
     trouble.tell(*processed, clock.now());
     if (processed->report.gate == Gate::no_frame) {
@@ -172,9 +173,13 @@ void run(const RunSettings& settings, Faults faults) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
   // The answers first: a driver that hangs may keep the capture thread from ending.
-  if (!unwritten) attempt([&] { lines.end(numbers.rename(rest)); });
+  const std::span<const Answer> renamed = numbers.rename(rest);
+  if (!unwritten) attempt([&] { lines.end(renamed); });
+  attempt([&] { setup.loops->add(renamed); });
+  for (const std::string& note : setup.loops->notes()) say("{}", note);
   if (!unwritten) {
     setup.out->commit();
+    setup.loops->commit();
   } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {
     say("what was written before is in {}", kept.string());
   }
@@ -234,7 +239,8 @@ Verb run_verb() {
             std::string(tasks)};
   verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
-                    "camera (/dev/video0), image folder, video file or descriptors (.npy)");
+                    "camera (/dev/video0), image folder, video file, bag (.mcap, .db3, its "
+                    "folder) or descriptors (.npy)");
   verb.options.path("reference", Access::reads, settings->reference,
                     "drive to localise in [close loops within the source]");
   verb.options.path("out", Access::writes, settings->out,
@@ -243,6 +249,7 @@ Verb run_verb() {
                     "counts and latency histograms of the run, as JSON [none]");
   verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
                       "folder for the difference matrix and a sheet of matched pairs [none]");
+  add_loop_output_options(verb.options, settings->loops);
   verb.options.section("Source");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "

@@ -158,7 +158,7 @@ Verb stills_verb() {
             {},
             [settings](Faults faults) { take_stills(*settings, std::move(faults)); }};
   verb.options.section("Task");
-  verb.options.path("source", Access::reads, settings->source, "image folder or video file");
+  verb.options.path("source", Access::reads, settings->source, "image folder, video file or bag");
   verb.options.folder("out", settings->out, {}, "folder to make: 000000.png ... and stills.csv");
   verb.options.add(
       {"format", ValueKind::text, "png or jpg [png]", [settings](std::string_view value) {
@@ -168,6 +168,8 @@ Verb stills_verb() {
          settings->format = value;
        }});
   verb.options.number("fps", settings->drive.fps, "frames a second of an image folder [10]");
+  verb.options.text("topic", settings->drive.topic,
+                    "of a bag: which pictures [the only topic that has any]");
   add_stills_options(verb.options, settings->stills);
   return verb;
 }

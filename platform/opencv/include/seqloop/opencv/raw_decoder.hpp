@@ -7,7 +7,8 @@
 
 namespace seqloop::opencv {
 
-/// Turns what cameras deliver without compression into grey or BGR pictures; `mjpg` is refused.
+/// Turns what cameras deliver without compression into grey or BGR pictures; `mjpg` and `png` are
+/// refused. Of 16 bits the higher 8 are taken, as OpenCV does with files.
 ///
 /// Grey is Y as the camera sends it: most use 16..235 of the 256 levels, and nothing is stretched,
 /// since that changes contrast by one factor everywhere. Colour takes Y, U, V as BT.601 in that

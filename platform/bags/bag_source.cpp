@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/bags/bag_source.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "bags/messages.hpp"
+#include "seqloop/bags/bag.hpp"
+#include "seqloop/fault.hpp"
+#include "seqloop/fixed_text.hpp"
+
+namespace seqloop::bags {
+namespace {
+
+/// "/a (sensor_msgs/msg/Image, 12 messages), ..."
+std::string list(const std::vector<Topic>& topics) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(topics.size(), most); ++i)
+    text += (i == 0 ? "" : ", ") + topics[i].name + " (" + topics[i].type + ", " +
+            std::to_string(topics[i].messages) + " messages)";
+  return text + (topics.size() > most ? ", ..." : "");
+}
+
+const Topic& choose_topic(const BagFacts& facts, const std::string& path, const std::string& name) {
+  std::vector<Topic> pictures;
+  std::ranges::copy_if(facts.topics, std::back_inserter(pictures), [](const Topic& topic) {
+    return picture_type(topic.type) != PictureType::none;
+  });
+  if (name.empty() && pictures.size() > 1)
+    throw SetupError(
+        Fault{path, "has several topics with pictures: " + list(pictures), "choose one: --topic"});
+  if (pictures.empty())
+    throw SetupError(Fault{path,
+                           facts.topics.empty()
+                               ? "holds no topic"
+                               : "has no topic with pictures: " + list(facts.topics),
+                           "sensor_msgs/msg/Image and CompressedImage are read"});
+  const std::string& wanted = name.empty() ? pictures.front().name : name;
+  const auto found = std::ranges::find(facts.topics, wanted, &Topic::name);
+  if (found == facts.topics.end())
+    throw SetupError(Fault{path, "has no topic " + name + "; with pictures: " + list(pictures),
+                           "choose one: --topic"});
+  if (picture_type(found->type) == PictureType::none)
+    throw SetupError(
+        Fault{path, name + " is " + found->type + ", no pictures; with pictures: " + list(pictures),
+              "choose one: --topic"});
+  if (found->encoding != "cdr")
+    throw SetupError(Fault{path, wanted + " is encoded as '" + found->encoding + "', not as cdr",
+                           "convert the bag to ROS 2's own encoding"});
+  if (found->messages == 0) throw SetupError(Fault{path, wanted + " has no messages"});
+  return *found;
+}
+
+}  // namespace
+
+class BagSource::Impl {
+ public:
+  Impl(const std::filesystem::path& path, const std::string& topic,
+       std::unique_ptr<PictureDecoder> decoder)
+      : bag_(open_bag(path)),
+        topic_(choose_topic(bag_->facts(), path.string(), topic)),
+        type_(picture_type(topic_.type)),
+        decoder_(std::move(decoder)) {
+    look_at_first();
+    bag_->choose(topic_.name);
+  }
+
+  [[nodiscard]] Grab grab(Frame& frame) noexcept {
+    frame = {};
+    frame.index = next_;
+    frame.time_s = time_s_;
+    try {
+      Message message;
+      const Read read = bag_->next(message);
+      if (read == Read::end) return Grab::end;
+      ++next_;
+      if (read == Read::damaged) return unreadable(frame, message.fault);
+      return take(message, frame);
+    } catch (const std::exception&) {
+      ++next_;
+      return unreadable(frame, "there is not enough memory");
+    }
+  }
+
+  [[nodiscard]] std::uint64_t frame_count() const noexcept { return topic_.messages; }
+
+  [[nodiscard]] std::int64_t start_ns() const noexcept { return start_ns_; }
+
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> lines = bag_->notes();
+    if (!stamped_)
+      lines.emplace_back("the pictures have no stamps: the times are those of the recording");
+    if (late_ > 0)
+      lines.push_back(std::to_string(late_) +
+                      " pictures have an earlier stamp than the one before: they take its time");
+    return lines;
+  }
+
+ private:
+  /// Finds when the drive begins, and by which clock.
+  void look_at_first() {
+    bag_->choose(topic_.name);
+    Message message;
+    Read read = bag_->next(message);
+    while (read == Read::damaged) read = bag_->next(message);
+    if (read == Read::end) return;
+    const PictureMessage first = read_picture(type_, message.bytes, fault_);
+    stamped_ = first.stamp_ns != 0;
+    start_ns_ = stamped_ ? first.stamp_ns : message.time_ns;
+  }
+
+  [[nodiscard]] Grab take(const Message& message, Frame& frame) {
+    const PictureMessage read = read_picture(type_, message.bytes, fault_);
+    const std::int64_t now = stamped_ ? read.stamp_ns : message.time_ns;
+    // Seconds and the rest by themselves, so that no stamp is too large; together they are exact.
+    const std::int64_t whole = now / second - start_ns_ / second;
+    const std::int64_t rest = now % second - start_ns_ % second;
+    const double nanoseconds = static_cast<double>(whole) * 1e9 + static_cast<double>(rest);
+    const double seconds = nanoseconds / 1e9;
+    if (seconds < time_s_) {
+      ++late_;
+    } else {
+      time_s_ = seconds;
+    }
+    frame.time_s = time_s_;
+    if (!fault_.empty()) return unreadable(frame, fault_.view());
+    const std::string_view fault = decoder_->decode(read.picture, frame.image);
+    return fault.empty() ? Grab::frame : unreadable(frame, fault);
+  }
+
+  static Grab unreadable(Frame& frame, std::string_view fault) noexcept {
+    frame.image = {};
+    frame.fault = fault;
+    return Grab::unreadable;
+  }
+
+  static constexpr std::int64_t second = 1'000'000'000;
+
+  std::unique_ptr<Bag> bag_;
+  Topic topic_;
+  PictureType type_;
+  std::unique_ptr<PictureDecoder> decoder_;
+  FixedText fault_;
+  bool stamped_ = false;
+  std::int64_t start_ns_ = 0;
+  double time_s_ = 0.0;
+  std::uint64_t next_ = 0;
+  std::uint64_t late_ = 0;
+};
+
+BagSource::BagSource(const std::filesystem::path& path, const std::string& topic,
+                     std::unique_ptr<PictureDecoder> decoder)
+    : impl_(std::make_unique<Impl>(path, topic, std::move(decoder))) {}
+
+BagSource::~BagSource() = default;
+
+Grab BagSource::grab(Frame& frame) noexcept { return impl_->grab(frame); }
+
+std::optional<std::uint64_t> BagSource::frame_count() const noexcept {
+  return impl_->frame_count();
+}
+
+std::vector<std::string> BagSource::notes() const { return impl_->notes(); }
+
+std::int64_t BagSource::start_ns() const noexcept { return impl_->start_ns(); }
+
+}  // namespace seqloop::bags

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "program/run/frame_times.hpp"
+#include "seqloop/bags/loop_bag.hpp"
+#include "seqloop/files/output_file.hpp"
+#include "seqloop/frame_report.hpp"
+
+namespace seqloop::program {
+
+/// Writes the accepted answers of a run as a bag of ROS 2.
+class ClosuresBag {
+ public:
+  /// Throws SetupError as files::OutputFile does.
+  explicit ClosuresBag(const std::filesystem::path& path);
+
+  /// @param start_ns when second 0 of the drive was, since 1970
+  /// @param closing  whether places are frames of the drive itself
+  void begin(std::int64_t start_ns, bool closing) noexcept;
+
+  /// Adds those that are accepted. @param times of the drive's frames. Throws files::IoError.
+  void add(std::span<const Answer> answers, const FrameTimes& times);
+
+  /// Throws files::IoError.
+  void commit();
+
+ private:
+  files::OutputFile out_;
+  bags::LoopBag bag_;
+  std::int64_t start_ns_ = 0;
+  bool closing_ = true;
+};
+
+}  // namespace seqloop::program

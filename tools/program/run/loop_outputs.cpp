@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "program/run/loop_outputs.hpp"
+
+#include "program/drives/drives.hpp"
+#include "program/options/verb.hpp"
+
+namespace seqloop::program {
+
+void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings) {
+  options.path("out-bag", Access::writes, settings.bag,
+               "accepted loop closures as a bag of ROS 2 (.mcap) [none]");
+  options.section("Pose graph", Shown::in_help_all);
+  options.add({"odometry", ValueKind::text,
+               "where the robot believed to be: a file of poses (TUM), or a topic of the source's "
+               "bag [none]",
+               [&settings](std::string_view value) { settings.odometry = value; },
+               [&settings] {
+                 return std::vector<FileUse>{{"odometry", Access::reads, settings.odometry}};
+               }});
+  options.path("pose-graph", Access::writes, settings.pose_graph,
+               "odometry and loops for an optimiser (.g2o) [none]");
+  options.path("trajectory", Access::writes, settings.trajectory,
+               "the frames' poses by odometry (TUM) [none]");
+}
+
+LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool closing, Faults& faults)
+    : closing_(closing) {
+  const bool wants_graph = !settings.pose_graph.empty() || !settings.trajectory.empty();
+  if (!settings.pose_graph.empty() && !closing) {
+    faults.push_back({"pose-graph", "the poses of the reference are not known",
+                      "leave --reference out: loops are closed within the drive"});
+  }
+  if (wants_graph && settings.odometry.empty()) {
+    faults.push_back({settings.pose_graph.empty() ? "trajectory" : "pose-graph",
+                      "one camera does not tell how far it is from place to place",
+                      "--odometry FILE or TOPIC"});
+  }
+  if (!wants_graph && !settings.odometry.empty()) {
+    faults.push_back({"odometry", "nothing is made of it", "add --pose-graph FILE.g2o"});
+  }
+  if (!settings.bag.empty()) {
+    collect(faults, [&] { bag_ = std::make_unique<ClosuresBag>(settings.bag); });
+  }
+  if (wants_graph) {
+    collect(faults, [&] {
+      graph_ = std::make_unique<PoseGraph>(settings.pose_graph, settings.trajectory);
+    });
+  }
+}
+
+void LoopOutputs::begin(const LoopOutputSettings& settings, const std::filesystem::path& source,
+                        const FrameSource* recording, std::size_t sequence) {
+  const std::int64_t start = start_ns(recording);
+  if (bag_) bag_->begin(start, closing_);
+  if (!graph_) return;
+  if (recording == nullptr) {
+    throw SetupError({"odometry", "a camera's cannot be read",
+                      "record camera and odometry, and give the bag as --source"});
+  }
+  graph_->begin(read_odometry(settings.odometry, source, start), static_cast<double>(start) * 1e-9,
+                sequence);
+}
+
+void LoopOutputs::add(const ProcessedFrame& processed) {
+  if (!bag_ && !graph_) return;
+  const FrameReport& report = processed.report;
+  if (report.gate != Gate::no_frame) {
+    times_.add(report.newest, processed.frame.time_s);
+    if (graph_) graph_->add(report.newest, processed.frame.time_s);
+  }
+  add(report.answers);
+}
+
+void LoopOutputs::add(std::span<const Answer> answers) {
+  if (bag_) bag_->add(answers, times_);
+  if (graph_) graph_->add(answers);
+}
+
+std::vector<std::string> LoopOutputs::notes() const {
+  return graph_ ? graph_->notes() : std::vector<std::string>();
+}
+
+void LoopOutputs::commit() {
+  if (bag_) bag_->commit();
+  if (graph_) graph_->commit();
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "program/run/pose_graph.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::program {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+// Of odometry, whose errors add up along the way: variances grow with the metres.
+constexpr double odometry_metres = 0.05;           // after one metre
+constexpr double odometry_radians = 0.5 * degree;  // likewise
+constexpr double least_metres = 0.01;  // of a way: a robot that stands is not sure either
+// Of a place: how far a right answer is off in frames, and how far views of one place turn.
+constexpr double loop_frames = 2.0;
+constexpr double loop_radians = 5.0 * degree;
+
+/// Of the two quaternions that are one orientation, the one with w >= 0: some readers take the
+/// other for a turn of more than half a circle.
+std::string numbers(const Pose& pose) {
+  const auto& p = pose.position;
+  auto q = pose.orientation;
+  if (q[3] < 0.0) q = {0.0 - q[0], 0.0 - q[1], 0.0 - q[2], 0.0 - q[3]};
+  return fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}", p[0], p[1], p[2], q[0],
+                     q[1], q[2], q[3]);
+}
+
+/// The upper triangle of a diagonal information matrix: positions, then turns.
+std::string information(double of_position, double of_turn) {
+  std::string text;
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column)
+      text += row == column ? fmt::format(" {:.6g}", row < 3 ? of_position : of_turn) : " 0";
+  return text;
+}
+
+std::string edge(std::uint64_t from, std::uint64_t to, const Pose& motion, double of_position,
+                 double of_turn) {
+  return fmt::format("EDGE_SE3:QUAT {} {} {}{}\n", from, to, numbers(motion),
+                     information(of_position, of_turn));
+}
+
+std::unique_ptr<files::OutputFile> opened(const std::filesystem::path& path) {
+  return path.empty() ? nullptr : std::make_unique<files::OutputFile>(path);
+}
+
+}  // namespace
+
+PoseGraph::PoseGraph(const std::filesystem::path& file, const std::filesystem::path& trajectory)
+    : graph_(opened(file)), trajectory_(opened(trajectory)) {}
+
+void PoseGraph::begin(Odometry odometry, double start_s, std::size_t sequence) {
+  odometry_ = std::move(odometry);
+  start_s_ = start_s;
+  sequence_ = sequence;
+}
+
+void PoseGraph::add(std::uint64_t frame, double time_s) {
+  if (const std::optional<Pose> pose = odometry_->at(time_s)) {
+    vertices_.push_back({frame, time_s, *pose});
+  } else {
+    ++without_pose_;
+  }
+}
+
+void PoseGraph::add(std::span<const Answer> answers) {
+  for (const Answer& answer : answers) {
+    if (answer.gate != Gate::match || !answer.match) continue;
+    // By uniqueness there is no probability; who accepts it then stands by it all the same.
+    const auto probability = static_cast<double>(answer.probability);
+    loops_.push_back(
+        {answer.frame, answer.match->place, std::isnan(probability) ? 1.0 : probability});
+  }
+}
+
+std::vector<std::string> PoseGraph::notes() const {
+  const auto has_both = [&](const Loop& loop) {
+    return vertex(loop.frame) != nullptr && vertex(loop.match) != nullptr;
+  };
+  const auto edges = std::ranges::count_if(loops_, has_both);
+  std::vector<std::string> lines{
+      fmt::format("pose graph: {} poses, {} loops", vertices_.size(), edges)};
+  if (without_pose_ > 0)
+    lines.push_back(fmt::format("{} frames lie outside of the odometry's times: they have no pose",
+                                without_pose_));
+  return lines;
+}
+
+void PoseGraph::commit() {
+  if (vertices_.empty())
+    throw SetupError({"odometry", "no frame of the drive lies within its times",
+                      "its times must be those of the drive: a bag's stamps, or seconds from its "
+                      "first frame"});
+  if (graph_) write_graph();
+  if (trajectory_) write_trajectory();
+}
+
+const PoseGraph::Vertex* PoseGraph::vertex(std::uint64_t frame) const noexcept {
+  const auto found = std::ranges::lower_bound(vertices_, frame, {}, &Vertex::frame);
+  return found == vertices_.end() || found->frame != frame ? nullptr : &*found;
+}
+
+/// How far the robot goes from one frame to the next, in the middle of all; halts do not count.
+double PoseGraph::metres_a_frame() const {
+  std::vector<double> ways;
+  for (std::size_t i = 1; i < vertices_.size(); ++i) {
+    const double way = metres(motion(vertices_[i - 1].pose, vertices_[i].pose));
+    const auto frames = static_cast<double>(vertices_[i].frame - vertices_[i - 1].frame);
+    if (way > least_metres) ways.push_back(way / frames);
+  }
+  if (ways.empty()) return least_metres;
+  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
+  std::ranges::nth_element(ways, middle);
+  return *middle;
+}
+
+void PoseGraph::write_graph() {
+  graph_->write("# SeqLoop: a vertex a frame, by odometry; loops have no known offset\n");
+  for (const Vertex& vertex : vertices_)
+    graph_->write(fmt::format("VERTEX_SE3:QUAT {} {}\n", vertex.frame, numbers(vertex.pose)));
+  graph_->write(fmt::format("FIX {}\n", vertices_.front().frame));
+  for (std::size_t i = 1; i < vertices_.size(); ++i) {
+    const Pose way = motion(vertices_[i - 1].pose, vertices_[i].pose);
+    const double length = std::max(metres(way), least_metres);
+    graph_->write(edge(vertices_[i - 1].frame, vertices_[i].frame, way,
+                       1.0 / (odometry_metres * odometry_metres * length),
+                       1.0 / (odometry_radians * odometry_radians * length)));
+  }
+  const double off = loop_frames * metres_a_frame();
+  for (const Loop& loop : loops_) {
+    if (vertex(loop.frame) == nullptr || vertex(loop.match) == nullptr) continue;
+    const double weight = loop.probability / static_cast<double>(sequence_);
+    graph_->write(edge(loop.match, loop.frame, Pose{}, weight / (off * off),
+                       weight / (loop_radians * loop_radians)));
+  }
+  graph_->commit();
+}
+
+void PoseGraph::write_trajectory() {
+  trajectory_->write("# time x y z qx qy qz qw\n");
+  for (const Vertex& vertex : vertices_)
+    trajectory_->write(fmt::format("{:.9f} {}\n", start_s_ + vertex.time_s, numbers(vertex.pose)));
+  trajectory_->commit();
+}
+
+}  // namespace seqloop::program

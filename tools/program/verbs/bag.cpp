@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "program/verbs/all_verbs.hpp"
+#include "seqloop/bags/bag.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct BagSettings {
+  std::string task;
+  std::filesystem::path file;
+  bool json = false;
+};
+
+double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
+
+void print_json(const bags::BagFacts& facts, const std::vector<std::string>& notes) {
+  nlohmann::ordered_json json;
+  json["format"] = facts.format;
+  json["start_ns"] = facts.start_ns;
+  json["end_ns"] = facts.end_ns;
+  json["topics"] = nlohmann::ordered_json::array();
+  for (const bags::Topic& topic : facts.topics) {
+    json["topics"].push_back({{"name", topic.name},
+                              {"type", topic.type},
+                              {"encoding", topic.encoding},
+                              {"messages", topic.messages}});
+  }
+  json["notes"] = notes;
+  // A bag's names may be no UTF-8.
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_table(const bags::BagFacts& facts, const std::vector<std::string>& notes) {
+  fmt::print("{}\n", facts.format);
+  if (facts.end_ns > 0) {
+    using Clock = std::chrono::system_clock;
+    const auto start = Clock::time_point(
+        std::chrono::duration_cast<Clock::duration>(std::chrono::nanoseconds(facts.start_ns)));
+    fmt::print("from {:%Y-%m-%d %H:%M:%S} UTC, {:.3f} seconds\n", fmt::gmtime(start),
+               seconds(facts.end_ns) - seconds(facts.start_ns));
+  }
+  std::size_t name = 5;
+  std::size_t type = 4;
+  for (const bags::Topic& topic : facts.topics) {
+    name = std::max(name, topic.name.size());
+    type = std::max(type, topic.type.size());
+  }
+  fmt::print("\n{:>12}  {:{}}  {:{}}  encoding\n", "messages", "topic", name, "type", type);
+  for (const bags::Topic& topic : facts.topics) {
+    fmt::print("{:>12}  {:{}}  {:{}}  {}\n", topic.messages, topic.name, name, topic.type, type,
+               topic.encoding);
+  }
+  for (const std::string& note : notes) fmt::print("{}\n", note);
+}
+
+void tell_of_bag(const BagSettings& settings, Faults faults) {
+  std::unique_ptr<bags::Bag> bag;
+  if (settings.task != "info") {
+    faults.push_back({"TASK",
+                      settings.task.empty() ? "not given" : "'" + settings.task + "' is none",
+                      "seqloop bag info FILE"});
+  }
+  if (settings.file.empty()) {
+    faults.push_back({"FILE", "not given", "seqloop bag info FILE"});
+  } else {
+    collect(faults, [&] { bag = bags::open_bag(settings.file); });
+  }
+  refuse(std::move(faults));
+  (settings.json ? print_json : print_table)(bag->facts(), bag->notes());
+}
+
+}  // namespace
+
+Verb bag_verb() {
+  const auto settings = std::make_shared<BagSettings>();
+  Verb verb{"bag", "Say what a bag of ROS 2 holds: bag info FILE", {}, [settings](Faults faults) {
+              tell_of_bag(*settings, std::move(faults));
+            }};
+  verb.options.section("Task");
+  verb.options.word("TASK", "info: format, times and topics",
+                    [settings](std::string_view value) { settings->task = value; });
+  verb.options.word("FILE", ".mcap, .db3, or the folder of a bag",
+                    [settings](std::string_view value) { settings->file = value; });
+  verb.options.flag("json", settings->json, "as JSON");
+  return verb;
+}
+
+}  // namespace seqloop::program
