@@ -14,7 +14,7 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
            "semaphore", "stop_token", "shared_mutex", "random", "csignal"}
 
 # The outside worlds, and our own rooms that none of them may look into.
-WORLDS = {"bags", "files", "linux", "opencv", "sqlite", "turbojpeg"}
+WORLDS = {"bags", "files", "http", "linux", "opencv", "sqlite", "turbojpeg"}
 OURS = {"seqloop", "evaluation", "experiment", "program", "street", "synthetic"}
 
 # Rooms of tools/, and the others that each looks into.
@@ -29,8 +29,8 @@ INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}
 EIGENVECTORS = ("src", "principal_components.cpp")
 
 # Libraries, and the outside worlds that they belong to.
-LIBRARIES = {"lz4frame.h": {"bags"}, "opencv2": {"opencv"}, "sqlite3.h": {"bags", "sqlite"},
-             "turbojpeg.h": {"turbojpeg"}, "zstd.h": {"bags"}}
+LIBRARIES = {"httplib.h": {"http"}, "lz4frame.h": {"bags"}, "opencv2": {"opencv"},
+             "sqlite3.h": {"bags", "sqlite"}, "turbojpeg.h": {"turbojpeg"}, "zstd.h": {"bags"}}
 
 
 def allowed(file: pathlib.PurePath, include: str, quoted: bool) -> bool:
