@@ -87,6 +87,10 @@ class Detector {
   /// Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
+  /// Answers that are not given yet are accepted from this probability on, where the decision is by
+  /// probability. @param min_probability above 0 .. 1. Allocates: never.
+  void accept_from(float min_probability) noexcept { pending_.accept_from(min_probability); }
+
   /// The recording is over: answers every frame that still waits. A live loop calls it when it
   /// ends; a step after it begins anew, as after many frames that never came.
   /// @return in order of frame; valid until the next step. Work: none to speak of.

@@ -196,25 +196,27 @@ TEST_F(Live, AConfigurationFileSetsTheBudget) {
   EXPECT_EQ(summary["overload"]["after"], 9);
 }
 
-TEST_F(Live, TheLatencyReportIsOnePageWithAPicture) {
+TEST_F(Live, TheReportIsOnePage) {
   write_drive("q.npy", 60);
   ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --fps 500 --pace live --out r.jsonl "
                 "--summary s.json")
                 .exit_code,
             0);
-  const auto report = [&](const std::string& arguments) {
-    return std::system(("cd '" + folder_.path().string() + "' && " SEQLOOP_LATENCY_REPORT " " +
-                        arguments + " >report.txt 2>&1")
-                           .c_str());
-  };
-  ASSERT_EQ(report("s.json p.html"), 0) << test::read_all(file("report.txt"));
+  const test::Outcome outcome = run("report r.jsonl --summary s.json --out p.html");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::string page = test::read_all(file("p.html"));
-  for (const char* part : {"<svg", "q.npy", "p99.9", "answer", " frames: "}) {
-    EXPECT_NE(page.find(part), std::string::npos) << part;
-  }
-  EXPECT_TRUE(exists("p.svg"));
-  EXPECT_NE(report("r.jsonl x.html"), 0) << "that is no summary";
-  EXPECT_NE(report("missing.json x.html"), 0);
+  const std::string begin = "<script type=\"application/json\" id=\"report\">";
+  const std::size_t at = page.find(begin) + begin.size();
+  const Json data = Json::parse(page.substr(at, page.find("</script>", at) - at));
+  const Json summary = json("s.json");
+  EXPECT_EQ(data["status"]["counts"]["frames"], summary["frames"]);
+  EXPECT_EQ(data["status"]["counts"]["gates"], summary["gates"]);
+  EXPECT_EQ(data["status"]["run"]["budget_ms"], summary["budget_ms"]);
+  EXPECT_EQ(data["status"]["run"]["source"], "q.npy");
+  EXPECT_EQ(run("report s.json --out x.html").exit_code, 2) << "these are no lines";
+  EXPECT_EQ(run("report missing.jsonl --out x.html").exit_code, 2);
+  EXPECT_EQ(run("report r.jsonl --summary r.jsonl --out x.html").exit_code, 2);
+  EXPECT_EQ(run("report r.jsonl --out r.jsonl").exit_code, 2) << "an input is not written over";
   EXPECT_FALSE(exists("x.html"));
 }
 

@@ -100,13 +100,10 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
         option.kind == ValueKind::flag
             ? sub->add_flag_callback(
                   "--" + option.name, [&into = values] { into = {"true"}; }, in_lines(option.help))
-            : sub->add_option((option.word ? "" : "--") + option.name, values,
-                              in_lines(option.help))
+            : sub->add_option("--" + option.name, values, in_lines(option.help))
                   ->type_name(value_name(option.kind))
-                  ->expected(1)
+                  ->expected(option.may_be_bare ? 0 : 1, 1)
                   ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    if (option.word)
-      flag->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     // No name: CLI11 does not show it.
     flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }

@@ -33,6 +33,9 @@ class PendingAnswers {
   /// Allocates: from the arena only.
   PendingAnswers(Arena& arena, const MatcherConfig& config, const Trajectories& trajectories);
 
+  /// From here on answers are accepted from this probability on. @param least above 0 .. 1
+  void accept_from(float least) noexcept { least_ = static_cast<double>(least); }
+
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;
 

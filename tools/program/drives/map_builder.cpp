@@ -20,7 +20,8 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
 }
 
 std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
-                     const MatcherConfig& config, Progress& progress) {
+                     const MatcherConfig& config, Progress& progress,
+                     const std::function<void(const Frame&)>& look) {
   std::vector<float> buffer(map.descriptor_size());
   std::deque<std::vector<float>> described{std::vector<float>(map.descriptor_size(), 0.0F)};
   std::vector<std::span<const float>> places;
@@ -35,6 +36,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
       progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
     } else {
       ++readable;
+      if (look) look(frame);
       const bool is_blank = blank(config.difference, descriptor);
       if (is_blank) ++blank_frames;
       const bool left_out = config.blank_is_unreadable && is_blank;

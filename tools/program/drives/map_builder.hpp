@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+
 #include "program/process/progress.hpp"
 #include "seqloop/describer.hpp"
 #include "seqloop/frame_source.hpp"
@@ -14,9 +16,11 @@ namespace seqloop::program {
 /// Makes a map of a whole drive. A frame that cannot be read is told of, and its place shows what
 /// the frame before it showed, so that places stay in step with frames. Where places are
 /// standardised, descriptors are held as float until all have been seen.
+/// @param look at each frame that can be read; may be empty
 /// @return frames that are blank, without any feature
 /// Throws SetupError when the map has too little room or no frame can be read.
 std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
-                     const MatcherConfig& config, Progress& progress);
+                     const MatcherConfig& config, Progress& progress,
+                     const std::function<void(const Frame&)>& look = {});
 
 }  // namespace seqloop::program

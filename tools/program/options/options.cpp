@@ -120,15 +120,6 @@ void OptionTable::on_off(std::string name, bool& target, std::string help) {
        [&target](std::string_view value) { target = parse_on_off(value); }});
 }
 
-void OptionTable::word(std::string name, std::string help,
-                       std::function<void(std::string_view)> set) {
-  add({.name = std::move(name),
-       .kind = ValueKind::text,
-       .help = std::move(help),
-       .set = std::move(set),
-       .word = true});
-}
-
 void OptionTable::folder(std::string name, std::filesystem::path& target,
                          std::vector<std::string> files, std::string help) {
   const auto uses = [&target, name, files = std::move(files)] {

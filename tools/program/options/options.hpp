@@ -39,9 +39,9 @@ struct Option {
   std::function<void(std::string_view)> set;
   /// What is read and written by it, once everything is set. May throw SetupError.
   std::function<std::vector<FileUse>()> files = {};
-  bool word = false;  ///< given by its place on the command line, without a flag in front
   std::string section = "Options";  ///< heading of the help
   Shown shown = Shown::in_help;
+  bool may_be_bare = false;  ///< on the command line without a value, which is then empty
 };
 
 /// The settings of one subcommand. Every value is taken as text and converted here, so that all
@@ -59,8 +59,6 @@ class OptionTable {
   void folder(std::string name, std::filesystem::path& target, std::vector<std::string> files,
               std::string help);
   void on_off(std::string name, bool& target, std::string help);
-  /// What is given by its place. @param name in capitals, for the help
-  void word(std::string name, std::string help, std::function<void(std::string_view)> set);
   void add(Option option);
 
   /// Says what all settings that are added from here on belong to.

@@ -26,6 +26,8 @@ Json finite(Number value) {
 constexpr std::array of_an_answer{"match",      "probability", "score",
                                   "uniqueness", "velocity",    "head"};
 
+}  // namespace
+
 Json answer_json(const Answer& answer) {
   Json json;
   json["frame"] = answer.frame;
@@ -41,8 +43,6 @@ Json answer_json(const Answer& answer) {
   }
   return json;
 }
-
-}  // namespace
 
 std::vector<std::string_view> names(const Misses& missed) {
   std::vector<std::string_view> names;

@@ -23,6 +23,9 @@ struct LoopState {
 [[nodiscard]] nlohmann::ordered_json frame_json(const ProcessedFrame& processed,
                                                 const LoopState& state);
 
+/// What is said of one frame in the end: `frame`, `status`, `match`, `probability` and so on.
+[[nodiscard]] nlohmann::ordered_json answer_json(const Answer& answer);
+
 /// Adds answers to those that it has, all in order of their frames. The last of them stands in the
 /// keys beside them, too.
 void add_answers(nlohmann::ordered_json& frame, std::span<const Answer> answers);

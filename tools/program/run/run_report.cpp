@@ -50,10 +50,11 @@ Json decision_json(const MatcherConfig& config) {
 
 }  // namespace
 
-std::string run_report(const RunSummary& summary, const RunConditions& conditions) {
+Json conditions_json(const RunConditions& conditions) {
   Json json;
   json["conditions"] = condition_line();
   json["source"] = conditions.source.string();
+  if (!conditions.reference.empty()) json["reference"] = conditions.reference.string();
   json["capture"] = conditions.capture;
   json["method"] = conditions.method;
   json["ds"] = conditions.config.sequence_length;
@@ -64,9 +65,14 @@ std::string run_report(const RunSummary& summary, const RunConditions& condition
   json["overload"] = {{"policy", name(conditions.overload.policy)},
                       {"every", conditions.overload.every},
                       {"after", conditions.overload.after},
-                      {"recover", conditions.overload.recover},
-                      {"times", conditions.overloads},
-                      {"frames", summary.overloaded()}};
+                      {"recover", conditions.overload.recover}};
+  return json;
+}
+
+std::string run_report(const RunSummary& summary, const RunConditions& conditions) {
+  Json json = conditions_json(conditions);
+  json["overload"]["times"] = conditions.overloads;
+  json["overload"]["frames"] = summary.overloaded();
   json["frames"] = summary.frames();
   for (std::size_t gate = 0; gate < gates; ++gate) {
     json["gates"][std::string(name(static_cast<Gate>(gate)))] = summary.at(static_cast<Gate>(gate));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "program/run/run_summary.hpp"
@@ -20,6 +21,7 @@ struct ThreadCost {
 /// What a run's numbers have to be read with.
 struct RunConditions {
   std::filesystem::path source;
+  std::filesystem::path reference;  ///< empty where loops are closed
   std::string method;
   MatcherConfig config;
   std::size_t places = 0;           ///< room in the map
@@ -30,6 +32,9 @@ struct RunConditions {
   std::string capture;          ///< the camera and its mode; empty for recordings
   ThreadCost cost;              ///< of the thread that decodes, describes, matches and writes
 };
+
+/// What a run was started with: `source`, `method`, `decision`, `budget_ms` and so on.
+[[nodiscard]] nlohmann::ordered_json conditions_json(const RunConditions& conditions);
 
 /// A run as one JSON object, newline included: conditions, counts, and of every stage its quantiles
 /// and its histogram as `[longest_ms, frames]` of the buckets that are not empty.

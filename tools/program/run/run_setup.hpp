@@ -14,6 +14,7 @@
 #include "program/options/matcher_settings.hpp"
 #include "program/options/real_time_options.hpp"
 #include "program/run/loop_outputs.hpp"
+#include "program/watch/serving.hpp"
 #include "seqloop/budget.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/linux/live_source.hpp"
@@ -43,6 +44,7 @@ struct RunSettings {
   MatcherSettings matcher;
   LoopSettings loop;
   RealTimeSettings real_time;
+  ServeSettings serve;
 };
 
 /// Everything that a run needs, opened and checked.

@@ -19,6 +19,7 @@ using ExperimentRunner =
 [[nodiscard]] Verb describe_verb();
 [[nodiscard]] Verb match_verb();
 [[nodiscard]] Verb run_verb();
+[[nodiscard]] Verb report_verb();
 [[nodiscard]] Verb eval_verb(ExperimentRunner run_experiment);
 [[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb stills_verb();

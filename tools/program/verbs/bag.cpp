@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/bags/bag.hpp"
@@ -16,8 +17,7 @@ namespace seqloop::program {
 namespace {
 
 struct BagSettings {
-  std::string task;
-  std::filesystem::path file;
+  std::vector<std::string> words;  // the task, and a file
   bool json = false;
 };
 
@@ -65,15 +65,17 @@ void print_table(const bags::BagFacts& facts, const std::vector<std::string>& no
 
 void tell_of_bag(const BagSettings& settings, Faults faults) {
   std::unique_ptr<bags::Bag> bag;
-  if (settings.task != "info") {
-    faults.push_back({"TASK",
-                      settings.task.empty() ? "not given" : "'" + settings.task + "' is none",
+  const auto& words = settings.words;
+  if (words.empty() || words[0] != "info") {
+    faults.push_back({words.empty() ? "bag" : "'" + words[0] + "'",
+                      words.empty() ? "what is to be done with it?" : "bags cannot do that",
                       "seqloop bag info FILE"});
   }
-  if (settings.file.empty()) {
-    faults.push_back({"FILE", "not given", "seqloop bag info FILE"});
-  } else {
-    collect(faults, [&] { bag = bags::open_bag(settings.file); });
+  if (words.size() == 2) {
+    collect(faults, [&] { bag = bags::open_bag(words[1]); });
+  } else if (!words.empty()) {
+    faults.push_back({"bag " + words[0], fmt::format("{} names after it", words.size() - 1),
+                      "seqloop bag info FILE"});
   }
   refuse(std::move(faults));
   (settings.json ? print_json : print_table)(bag->facts(), bag->notes());
@@ -87,11 +89,11 @@ Verb bag_verb() {
               tell_of_bag(*settings, std::move(faults));
             }};
   verb.options.section("Task");
-  verb.options.word("TASK", "info: format, times and topics",
-                    [settings](std::string_view value) { settings->task = value; });
-  verb.options.word("FILE", ".mcap, .db3, or the folder of a bag",
-                    [settings](std::string_view value) { settings->file = value; });
   verb.options.flag("json", settings->json, "as JSON");
+  verb.words = [settings](std::vector<std::string> words) { settings->words = std::move(words); };
+  verb.tasks =
+      "What it does:\n  seqloop bag info FILE [--json]   format, times and topics of .mcap, .db3, "
+      "or a bag's folder";
   return verb;
 }
 

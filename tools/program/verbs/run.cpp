@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <functional>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -24,6 +26,7 @@
 #include "program/run/source_numbers.hpp"
 #include "program/run/trouble_log.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "program/watch/serving.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
@@ -70,6 +73,26 @@ auto with_room(const RunSetup& setup, Make make) {
   throw SetupError(std::move(faults));
 }
 
+std::unique_ptr<Serving> open_serving(const RunSettings& settings,
+                                      const RunConditions& conditions) {
+  if (!settings.serve.address) return nullptr;
+  const bool closing = settings.reference.empty();
+  nlohmann::ordered_json run = conditions_json(conditions);
+  const Capacity capacity{conditions.places, conditions.descriptor_size};
+  run["memory_planned"] = PlaceMap::bytes_needed(conditions.config, capacity) +
+                          Detector::bytes_needed(conditions.config, capacity);
+  return std::make_unique<Serving>(settings.serve, std::move(run), closing);
+}
+
+/// Does what people wish, before the next frame. @return whether the run goes on
+bool heed(const Wishes& wishes, Detector& detector, Clock& clock) {
+  constexpr auto pause = std::chrono::milliseconds(20);
+  while (wishes.pause && !wishes.stop && !interrupted()) clock.sleep_until(clock.now() + pause);
+  const float least = wishes.min_probability.load(std::memory_order_relaxed);
+  if (least > 0.0F) detector.accept_from(least);
+  return !wishes.stop && !interrupted();
+}
+
 void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
@@ -77,14 +100,29 @@ void run(const RunSettings& settings, Faults faults) {
   if (!settings.pictures.empty()) make_folder(settings.pictures);
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
+  RunConditions conditions{settings.source,
+                           settings.reference,
+                           settings.matcher.method,
+                           setup.config,
+                           setup.places,
+                           setup.descriptor_size,
+                           setup.budget,
+                           setup.overload,
+                           0,
+                           setup.capture,
+                           {}};
+  const std::unique_ptr<Serving> serving = open_serving(settings, conditions);
+
   // Start-up: the map, then every path once, before the first frame counts.
   PlaceMap map = with_room(setup, [&] {
     return PlaceMap(setup.config, {setup.places, setup.descriptor_size, setup.sessions});
   });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
+    std::function<void(const Frame&)> look;
+    if (serving) look = [&](const Frame& frame) { serving->add_place(frame.image, frame.index); };
     const std::size_t blank_places =
-        fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping);
+        fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping, look);
     tell_notes(settings.reference, *setup.reference);
     tell_blank(settings.reference, blank_places, map.size());
   }
@@ -122,6 +160,7 @@ void run(const RunSettings& settings, Faults faults) {
     }
   };
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
+    if (serving && !heed(serving->watch().wishes, detector, clock)) break;
     std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
     if (!settings.pictures.empty()) {
@@ -137,6 +176,7 @@ void run(const RunSettings& settings, Faults faults) {
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
+    if (serving) serving->watch().publish(*processed, state, summary, map.size(), clock.now());
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     attempt([&] { lines.add(*processed, state); });
@@ -172,10 +212,11 @@ void run(const RunSettings& settings, Faults faults) {
   if (none_readable && setup.recording) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
+  const std::span<const Answer> last = numbers.rename(rest);
+  if (serving) serving->watch().publish(last);
   // The answers first: a driver that hangs may keep the capture thread from ending.
-  const std::span<const Answer> renamed = numbers.rename(rest);
-  if (!unwritten) attempt([&] { lines.end(renamed); });
-  attempt([&] { setup.loops->add(renamed); });
+  if (!unwritten) attempt([&] { lines.end(last); });
+  attempt([&] { setup.loops->add(last); });
   for (const std::string& note : setup.loops->notes()) say("{}", note);
   if (!unwritten) {
     setup.out->commit();
@@ -188,10 +229,9 @@ void run(const RunSettings& settings, Faults faults) {
     summary.captured(setup.live->counts());
   }
   if (setup.summary) {
-    setup.summary->write(
-        run_report(summary, {settings.source, settings.matcher.method, setup.config, setup.places,
-                             setup.descriptor_size, setup.budget, setup.overload,
-                             overload.episodes(), setup.capture, cost}));
+    conditions.overloads = overload.episodes();
+    conditions.cost = cost;
+    setup.summary->write(run_report(summary, conditions));
     setup.summary->commit();
   }
   if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
@@ -268,6 +308,7 @@ Verb run_verb() {
   verb.options.number("give-up-s", settings->give_up_s,
                       "seconds without a frame after which a camera is given up [0: never]");
   add_real_time_options(verb.options, settings->real_time);
+  add_serve_options(verb.options, settings->serve);
   return verb;
 }
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+// Usage: page_test.cjs BROWSER URL TOKEN [FOLDER FOR SCREENSHOTS]
+const {assert, open, noSeriousFaults, noSidewaysScroll, start} = require('./browser.cjs');
+
+const SIZES = [[390, 844], [1280, 800], [2560, 1300]];
+
+async function picturesAreThere(page, selector) {
+  await page.waitForFunction((where) => {
+    const images = [...document.querySelectorAll(where + ' img')];
+    return images.length > 0 && images.every((image) => image.complete && image.naturalWidth > 0);
+  }, selector, {timeout: 60000});
+}
+
+async function main([path, url, token, folder]) {
+  const browser = await start(path);
+  const page = await open(browser, {viewport: {width: 1280, height: 800}, colorScheme: 'light'});
+  await page.goto(`${url}/#token=${token}`);
+  assert.strictEqual(await page.evaluate(() => location.hash), '', 'the token is in no address any more');
+  await page.waitForFunction(() => view.status && view.status.counts.frames >= 100, null, {timeout: 120000});
+  assert.ok((await page.textContent('#source')).includes('<b>query'), 'names are text');
+  await page.waitForFunction(() => view.dots.length > 20, null, {timeout: 120000});
+  await page.click('#pause');
+  await page.waitForFunction(() => view.status.state === 'paused', null, {timeout: 60000});
+
+  // A click on a dot shows its pair.
+  const dot = await page.evaluate(() => {
+    const {left, top, answer} = view.dots[Math.floor(view.dots.length / 2)];
+    return {left, top, frame: answer.frame, match: answer.match};
+  });
+  await page.click('#places', {position: {x: dot.left, y: dot.top}});
+  const picked = await page.textContent('#places-picked');
+  const shown = await page.evaluate(() => [view.picked.frame, view.picked.match]);
+  assert.ok(Math.abs(shown[0] - dot.frame) <= 3, 'the dot that was clicked, or one on top of it');
+  assert.ok(picked.startsWith(`Frame ${shown[0]} is place ${shown[1]}`), picked);
+  await picturesAreThere(page, '#picked');
+  const sources = await page.$$eval('#picked > figure > img', (all) => all.map((image) => image.src));
+  assert.deepStrictEqual(sources.map((at) => new URL(at).search),
+    [`?of=frame&number=${shown[0]}`, `?of=place&number=${shown[1]}`]);
+  await page.focus('#places');
+  await page.keyboard.press('ArrowRight');
+  assert.notStrictEqual(await page.textContent('#places-picked'), picked, 'the keyboard goes on to the next');
+
+  // A person's word on a loop is kept.
+  const loop = page.locator('#loops li').first();
+  const which = await loop.getAttribute('data-loop');
+  await loop.getByRole('button', {name: /^reject/}).click();
+  await page.waitForSelector(`#loops li.rejected[data-loop="${which}"]`);
+  await page.reload();
+  await page.waitForSelector(`#loops li.rejected[data-loop="${which}"]`);
+
+  // Who has no token may look, and nothing else.
+  const guest = await open(browser, {viewport: {width: 1280, height: 800}});
+  await guest.goto(url);
+  await guest.waitForSelector(`#loops li.rejected[data-loop="${which}"]`);
+  assert.ok(!await guest.isVisible('#control'));
+  assert.strictEqual(await guest.locator('#loops button').count(), 0);
+  const refused = await guest.evaluate(() => fetch('/api/control', {method: 'POST', body: '{"do":"stop"}',
+    headers: {'Content-Type': 'application/json'}}).then((reply) => reply.status));
+  assert.strictEqual(refused, 401);
+  await guest.close();
+
+  await picturesAreThere(page, '#pair');
+  const papers = new Set();
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({colorScheme});
+    papers.add(await page.evaluate(() => getComputedStyle(document.body).backgroundColor));
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({width, height});
+      await page.waitForTimeout(200);
+      await noSidewaysScroll(page, `${width} pixels, ${colorScheme}`);
+      await noSeriousFaults(page, `${width} pixels, ${colorScheme}`);
+      if (folder) await page.screenshot({path: `${folder}/page_${colorScheme}_${width}.png`, fullPage: true});
+    }
+  }
+  assert.strictEqual(papers.size, 2, 'dark is another colour');
+  assert.deepStrictEqual(page.complaints(), []);
+
+  page.on('dialog', (dialog) => dialog.accept());
+  await page.click('#stop');
+  await page.waitForFunction(() => document.getElementById('health').textContent.includes('ended'), null, {timeout: 60000});
+  await browser.close();
+}
+
+main(process.argv.slice(2)).catch((error) => {
+  console.error(error);
+  process.exit(1);
+});

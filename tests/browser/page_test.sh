@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The page in headless Chromium, before a run that goes on.
+# Usage: page_test.sh SOURCE BUILD SEQLOOP STREET [PICTURES]
+#   PICTURES is a folder for screenshots
+# Exit code 77 where the browser, node or its packages are missing (tools/check browser installs
+# them); with SEQLOOP_REQUIRE_BROWSER set, that fails.
+set -euo pipefail
+source=$1 build=$2 seqloop=$3 street=$4 pictures=${5:-}
+missing() {
+  echo "$1 is missing"
+  [ -z "${SEQLOOP_REQUIRE_BROWSER:-}" ] && exit 77
+  exit 1
+}
+browser=$(command -v chromium-headless-shell || command -v chromium || true)
+[ -n "$browser" ] || missing "Debian's chromium"
+command -v node >/dev/null || missing node
+modules=$build/browser/node_modules
+[ -d "$modules/playwright-core" ] && [ -d "$modules/axe-core" ] || missing "playwright-core or axe-core in $modules"
+
+work=$(mktemp -d)
+run=
+cleanup() {
+  [ -z "$run" ] || kill "$run" 2>/dev/null || true
+  rm -rf "$work"
+}
+trap cleanup EXIT
+"$street" --quiet --drives localise --frames 200 --size 160x90 --out "$work/street"
+echo 0123456789abcdef >"$work/token"
+# Names are text, whatever they hold.
+mv "$work/street/query" "$work/street/<b>query"
+"$seqloop" run --source "$work/street/<b>query" --reference "$work/street/reference" --pace live --fps 20 \
+  --budget-total 10000 --serve 127.0.0.1:0 --serve-token "$work/token" --out "$work/run.jsonl" \
+  --summary "$work/run.json" 2>"$work/said" &
+run=$!
+for _ in $(seq 600); do
+  url=$(sed -n 's/.*serving on \(http:[^ ]*\)$/\1/p' "$work/said")
+  [ -z "$url" ] || break
+  sleep 0.1
+done
+[ -n "$url" ] || { cat "$work/said"; exit 1; }
+NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$url" 0123456789abcdef $pictures
+wait "$run" || { cat "$work/said"; exit 1; }
+run=
+"$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/report.html"
+NODE_PATH=$modules node "$source/tests/browser/report_test.cjs" "$browser" "$work/report.html" $pictures

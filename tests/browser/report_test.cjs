@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+// Usage: report_test.cjs BROWSER PAGE.html [FOLDER FOR SCREENSHOTS]
+const {assert, open, noSeriousFaults, noSidewaysScroll, start} = require('./browser.cjs');
+
+async function main([path, file, folder]) {
+  const browser = await start(path);
+  for (const [width, colorScheme] of [[390, 'dark'], [1280, 'light']]) {
+    const page = await open(browser, {viewport: {width, height: 800}, colorScheme, offline: true});
+    await page.goto('file://' + file);
+    await page.waitForFunction(() => view.dots.length > 20);
+    assert.ok((await page.textContent('#source')).includes('<b>query'));
+    assert.ok((await page.locator('#loops li').count()) > 0);
+    const {left, top} = await page.evaluate(() => view.dots[0]);
+    await page.click('#places', {position: {x: left, y: top}});
+    assert.ok((await page.textContent('#places-picked')).startsWith('Frame '));
+    await noSidewaysScroll(page, `report, ${width} pixels`);
+    await noSeriousFaults(page, `report, ${width} pixels`);
+    if (folder) await page.screenshot({path: `${folder}/report_${colorScheme}_${width}.png`, fullPage: true});
+    assert.deepStrictEqual(page.complaints(), []);
+    await page.close();
+  }
+  await browser.close();
+}
+
+main(process.argv.slice(2)).catch((error) => {
+  console.error(error);
+  process.exit(1);
+});

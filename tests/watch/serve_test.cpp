@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// The real program, watched while it runs.
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "core/oracle.hpp"
+#include "http/client.hpp"
+#include "program/program.hpp"
+#include "seqloop/files/npy_file.hpp"
+
+namespace seqloop {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+class Serve : public test::Program {
+ protected:
+  void SetUp() override {
+    const oracle::Vectors lap = oracle::drive(11, 150, 24, 0.2F);
+    files::NpyWriter writer(file("q.npy"), 24);
+    for (int n = 0; n < 2; ++n) {
+      for (const auto& row : lap) writer.append(row);
+    }
+    writer.commit();
+    folder_.write("token", "0123456789abcdef\n");
+  }
+
+  /// Starts a run that is served, and waits until it is.
+  void start(const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder_.path().string() +
+        "' && { '" SEQLOOP_BINARY
+        "' run --source q.npy --exclude 20 --serve 127.0.0.1:0 --serve-token "
+        "token --out r.jsonl " +
+        arguments + "; echo $? >code.txt; } 2>err.txt </dev/null &";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const std::string sign = "serving on http://127.0.0.1:";
+    for (int n = 0; n < 1200 && port_ == 0; ++n) {
+      const std::string said = test::read_all(file("err.txt"));
+      const std::size_t at = said.find(sign);
+      if (at != std::string::npos && said.find('\n', at) != std::string::npos)
+        port_ = static_cast<std::uint16_t>(std::stoi(said.substr(at + sign.size())));
+      std::this_thread::sleep_for(50ms);
+    }
+    ASSERT_NE(port_, 0) << test::read_all(file("err.txt"));
+  }
+
+  [[nodiscard]] std::string ask(const std::string& request) const {
+    http::test::Client client(port_);
+    client.send(request);
+    bool complete = false;
+    return client.reply(complete, 30'000);
+  }
+  [[nodiscard]] std::string get(const std::string& path) const {
+    return ask("GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  [[nodiscard]] std::string post(const std::string& path, const Json& wish) const {
+    const std::string body = wish.dump();
+    return ask("POST " + path +
+               " HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer 0123456789abcdef\r\n"
+               "Content-Type: application/json\r\nContent-Length: " +
+               std::to_string(body.size()) + "\r\n\r\n" + body);
+  }
+  static Json json(const std::string& reply) {
+    return Json::parse(reply.substr(reply.find("\r\n\r\n") + 4), nullptr, false);
+  }
+  /// Asks until it holds.
+  template <class Condition>
+  bool until(Condition holds) const {
+    for (int n = 0; n < 600; ++n) {
+      if (holds(json(get("/api/status")))) return true;
+      std::this_thread::sleep_for(50ms);
+    }
+    return false;
+  }
+  [[nodiscard]] std::string ended() const {
+    for (int n = 0; n < 1200 && !exists("code.txt"); ++n) std::this_thread::sleep_for(50ms);
+    return test::read_all(file("code.txt"));
+  }
+  /// Lines of a run, without the times that no two runs share.
+  [[nodiscard]] std::vector<Json> lines(const std::string& name) const {
+    std::istringstream text(test::read_all(file(name)));
+    std::vector<Json> all;
+    for (std::string line; std::getline(text, line);) {
+      all.push_back(Json::parse(line));
+      for (const char* timed : {"latency_ms", "age_ms", "deadline_missed", "missed"})
+        all.back().erase(timed);
+    }
+    return all;
+  }
+
+  std::uint16_t port_ = 0;
+};
+
+TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
+  start("--pace live --fps 100 --budget-total 10000");
+  EXPECT_TRUE(get("/").find("<title>SeqLoop</title>") != std::string::npos);
+  EXPECT_TRUE(get("/page.js").find("'use strict'") != std::string::npos);
+  EXPECT_EQ(get("/page.js").find("innerHTML"), std::string::npos) << "names are text";
+  EXPECT_TRUE(get("/healthz").ends_with("\r\n\r\nok\n"));
+  ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
+  ASSERT_TRUE(until([](const Json& status) { return status["state"] == "paused"; }));
+  EXPECT_TRUE(post("/api/control", {{"do", "resume"}}).starts_with("HTTP/1.1 200"));
+  ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 20; }));
+  EXPECT_TRUE(
+      post("/api/control", {{"do", "mark"}, {"name", "<door>"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(json(get("/api/marks"))[0]["name"], "<door>");
+  EXPECT_TRUE(post("/api/control", {{"do", "threshold"}, {"min_probability", 2}})
+                  .starts_with("HTTP/1.1 400"));
+  EXPECT_TRUE(post("/api/control", {{"do", "threshold"}, {"min_probability", .5}})
+                  .starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(post("/api/control", {{"do", 7}}).starts_with("HTTP/1.1 400"));
+  EXPECT_TRUE(post("/api/control", Json::array()).starts_with("HTTP/1.1 400"));
+  EXPECT_TRUE(post("/api/other", Json::object()).starts_with("HTTP/1.1 404"));
+  const Json status = json(get("/api/status"));
+  EXPECT_EQ(status["run"]["source"], "q.npy");
+  EXPECT_EQ(status["run"]["method"], "o-seqcnnslam");
+  EXPECT_GT(status["run"]["memory_planned"], 1000);
+  EXPECT_EQ(status["run"]["decision"]["min_probability"], .5);
+  EXPECT_TRUE(status["frame"].contains("latency_ms"));
+  EXPECT_NE(get("/metrics").find("seqloop_frames_total "), std::string::npos);
+  EXPECT_TRUE(get("/api/picture?of=frame&number=1").starts_with("HTTP/1.1 404"))
+      << "there are no pictures";
+  EXPECT_TRUE(get("/api/picture").starts_with("HTTP/1.1 400"));
+  EXPECT_TRUE(post("/api/control", {{"do", "stop"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+}
+
+TEST_F(Serve, AnswersAreTheSameWhoeverLooks) {
+  ASSERT_EQ(run("run --source q.npy --exclude 20 --out alone.jsonl").exit_code, 0);
+  start("");
+  std::vector<std::unique_ptr<http::test::Client>> clients;
+  for (int n = 0; n < 10; ++n) {
+    clients.push_back(std::make_unique<http::test::Client>(port_));
+    clients.back()->send(n % 3 == 0   ? "GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n"
+                         : n % 3 == 1 ? "GET /api/history HTTP/1.1\r\nHost: localhost\r\n\r\n"
+                                      : "rubbish\r\n\r\n");
+  }
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  EXPECT_EQ(lines("r.jsonl"), lines("alone.jsonl"));
+}
+
+TEST_F(Serve, TellsWhatIsWrongBeforeAnyWork) {
+  const auto refused = [&](const std::string& flags, const char* part) {
+    const test::Outcome outcome = run("run --source q.npy --out x.jsonl " + flags);
+    EXPECT_EQ(outcome.exit_code, 2) << flags;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_FALSE(exists("x.jsonl"));
+  };
+  refused("--serve robot:80", "no IP address");
+  refused("--serve 192.0.2.1:8321", "cannot be listened on");
+  refused("--serve 127.0.0.1:0 --serve-token gone", "gone cannot be read");
+  folder_.write("short", "abc\n");
+  refused("--serve 127.0.0.1:0 --serve-token short", "holds no token");
+  refused("--serve-token token", "nothing is served");
+}
+
+}  // namespace
+}  // namespace seqloop

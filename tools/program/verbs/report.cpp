@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "program/options/verb.hpp"
+#include "program/verbs/all_verbs.hpp"
+#include "program/watch/report_page.hpp"
+#include "seqloop/files/output_file.hpp"
+
+namespace seqloop::program {
+namespace {
+
+struct ReportSettings {
+  std::filesystem::path run;
+  std::filesystem::path summary;
+  std::filesystem::path out;
+  std::size_t words = 0;  // without a flag in front
+};
+
+nlohmann::ordered_json conditions(const ReportSettings& settings, Faults& faults) {
+  if (settings.summary.empty()) return {{"source", settings.run.filename().string()}};
+  std::ifstream stream(settings.summary);
+  auto run = nlohmann::ordered_json::parse(stream, nullptr, false);
+  const bool is_summary = run.is_object() && run.contains("budget_ms") &&
+                          run["budget_ms"].is_object() && run.contains("source") &&
+                          run["source"].is_string();
+  if (!is_summary) {
+    faults.push_back(
+        {"summary", settings.summary.string() + " is not what `seqloop run --summary` writes"});
+  } else {
+    for (const char* counted : {"stages", "gates", "captured", "missed"}) run.erase(counted);
+  }
+  return run;
+}
+
+void report(const ReportSettings& settings, Faults faults) {
+  if (settings.run.empty())
+    faults.push_back({"run", "not given", "name what `seqloop run --out` wrote"});
+  if (settings.words > 1)
+    faults.push_back({"report", "more than one run is given", "seqloop report RUN --out PAGE"});
+  if (settings.out.empty())
+    faults.push_back({"out", "not given", "name the page to write, --out page.html"});
+  auto run = conditions(settings, faults);
+  std::ifstream lines(settings.run);
+  if (!settings.run.empty() && (!lines.is_open() || std::filesystem::is_directory(settings.run))) {
+    faults.push_back({settings.run.string(), "cannot be read"});
+  }
+  refuse(std::move(faults));
+  const std::string page = report_page(lines, settings.run.string(), std::move(run));
+  files::OutputFile out(settings.out);
+  out.write(page);
+  out.commit();
+}
+
+}  // namespace
+
+Verb report_verb() {
+  const auto settings = std::make_shared<ReportSettings>();
+  Verb verb{"report",
+            "Make a page of a run that is over",
+            {},
+            [settings](Faults faults) { report(*settings, std::move(faults)); },
+            {}};
+  verb.options.path("run", Access::reads, settings->run,
+                    "lines that `seqloop run --out` wrote; the flag itself may be left out");
+  verb.options.path("summary", Access::reads, settings->summary,
+                    "what `seqloop run --summary` wrote of the same run: budget, method [none]");
+  verb.options.path("out", Access::writes, settings->out, "the page, one HTML file");
+  verb.words = [settings](const std::vector<std::string>& words) {
+    if (!words.empty()) settings->run = words.front();
+    settings->words = words.size();
+  };
+  return verb;
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Where cpp-httplib was missing when the program was built.
+#include <nlohmann/json.hpp>
+
+#include "program/watch/serving.hpp"
+
+namespace seqloop::program {
+
+class Serving::Impl {};
+
+Serving::Serving(const ServeSettings& /*settings*/, nlohmann::ordered_json /*run*/,
+                 bool /*own_places*/) {
+  throw SetupError({"serve", "this program was built without a server",
+                    "install libcpp-httplib-dev and pkgconf, configure and build anew"});
+}
+Serving::~Serving() = default;
+
+// Never reached: there is no object.
+Watch& Serving::watch() noexcept { std::abort(); }
+void Serving::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
+
+}  // namespace seqloop::program

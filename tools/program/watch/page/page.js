@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// The page: takes what the server tells, and shows it.
+
+const MOST_ANSWERS = 8000;
+const view = {status: null, frames: [], nextFrame: 0, answers: [], nextAnswer: 0, dots: [], picked: null, marks: [], drawn: ''};
+
+const toAnswer = ([serial, frame, status, match, probability]) => ({serial, frame, status: GATES[status], match, probability});
+
+/// Takes frames and answers that are newer than what is here. Returns whether some are missing.
+function takeNews(news) {
+  const gap = news.first_frame > view.nextFrame ||
+    (news.answers.length > 0 && news.answers[0][0] > view.nextAnswer);
+  view.frames.push(...news.frames.slice(Math.max(0, view.nextFrame - news.first_frame)));
+  view.nextFrame = Math.max(view.nextFrame, news.first_frame + news.frames.length);
+  view.frames.splice(0, view.frames.length - 300);
+  for (const row of news.answers) {
+    if (row[0] < view.nextAnswer) continue;
+    view.answers.push(toAnswer(row));
+    view.nextAnswer = row[0] + 1;
+  }
+  if (view.answers.length > MOST_ANSWERS) view.answers = view.answers.filter((one, i) => i % 2 === 0);
+  return gap;
+}
+
+async function takeHistory() {
+  const past = report ? report.history : await ask('/api/history');
+  view.frames = [];
+  view.answers = [];
+  view.nextFrame = past.first_frame;
+  view.nextAnswer = 0;
+  takeNews(past);
+  view.marks = report ? [] : await ask('/api/marks');
+}
+
+function showStages(status) {
+  const budget = status.run.budget_ms || {};
+  byId('stages').replaceChildren(...Object.entries(status.stages).map(([name, stage]) => make('tr', {},
+    make('th', {scope: 'row'}, name), make('td', {}, milliseconds(stage.p50_ms)), make('td', {}, milliseconds(stage.p99_ms)),
+    make('td', budget[name] && stage.max_ms > budget[name] ? {class: 'bad'} : {}, milliseconds(stage.max_ms)),
+    make('td', {}, budget[name] ? milliseconds(budget[name]) : '–'))));
+}
+
+function showStatus(status) {
+  const {run, counts, frame, map, health} = status;
+  const gates = counts.gates;
+  show('source', [run.source, run.reference && 'in ' + run.reference].filter(Boolean).join(' '));
+  show('version', run.conditions || '');
+  byId('health').className = status.state === 'ended' ? 'soft' : health.ok ? status.state === 'paused' ? 'warn' : 'good' : 'bad';
+  show('health', report ? 'A run that is over.' : status.state === 'ended' ? 'The run has ended.' :
+    health.ok ? (status.state === 'paused' ? 'paused' : 'running well') : 'in trouble: ' + health.why);
+  show('sentence', sentence(status));
+  const answer = status.answer;
+  show('detail', answer && answer.match !== null && answer.status !== 'new_place' ?
+    [answer.probability !== null && `probability ${percent(answer.probability)}`,
+      answer.uniqueness !== null && `uniqueness ${answer.uniqueness.toFixed(2)}`,
+      answer.score !== null && `score ${answer.score.toFixed(3)}`].filter(Boolean).join(' · ') : '');
+  fillTerms('counts', [['frames', number(counts.frames)], ...['match', 'unsure', 'new_place', 'not_unique', 'no_candidate',
+    'warming_up', 'frame_error', 'no_frame'].filter((name) => gates[name] || name === 'match').map((name) => [name, number(gates[name])]),
+    ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
+    ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)]]);
+  const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
+  fillTerms('map', [['places', number(map.places) + (run.places ? ' of ' + number(run.places) : '')],
+    ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
+    ['k', frame ? number(frame.k) : '–'],
+    ['scanned', map.scanned ? number(map.scanned) + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
+    ['memory_planned', bytes(run.memory_planned)], ['memory_used', bytes(map.memory_used)],
+    ['method', run.method || '–'], ['ds', number(run.ds)], ...(run.capture ? [['capture', run.capture]] : []),
+    ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
+  showStages(status);
+  show('pause', status.state === 'paused' ? 'resume' : 'pause');
+}
+
+// Places are frames of the drive itself, as far as can be told.
+const ownPlaces = () => !view.status.run.reference && view.answers.every((one) => one.match === null || one.match <= one.frame);
+
+function draw() {
+  const status = view.status;
+  const decision = status.run.decision || {};
+  view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks);
+  drawProbability(byId('probability'), view.answers, decision.min_probability);
+  drawTimes(byId('times'), view.frames, (status.run.budget_ms || {}).total);
+}
+
+function showAll() {
+  const status = view.status;
+  showStatus(status);
+  draw();
+  showLoops(status.loops.listed);
+  if (report || document.hidden) return;
+  const answer = status.answer;
+  const place = answer && answer.match !== null && answer.status !== 'new_place' ? answer.match : null;
+  // The newest picture where there is no place; otherwise the frame that the answer is about.
+  const frame = place === null ? status.newest_picture : answer.frame;
+  if (frame !== null && frame !== undefined) showPairSometimes(frame, place);
+}
+
+let pairAt = 0;
+/// Three times a second: a person cannot judge pairs faster.
+function showPairSometimes(frame, place) {
+  if (Date.now() - pairAt < 330) return;
+  pairAt = Date.now();
+  showPair(byId('pair'), frame, place, true);
+}
+
+function pick(dot) {
+  if (!dot) return;
+  view.picked = dot.answer;
+  const {frame, match, probability} = dot.answer;
+  show('places-picked', `Frame ${number(frame)} is place ${number(match)}` +
+    (probability === null ? '.' : `, probability ${probability.toFixed(3)}.`));
+  byId('picked').hidden = false;
+  showPair(byId('picked'), frame, match, true);
+  draw();
+}
+
+byId('places').onclick = (event) => {
+  const {left, top} = byId('places').getBoundingClientRect();
+  const far = (dot) => Math.hypot(dot.left - (event.clientX - left), dot.top - (event.clientY - top));
+  const nearest = view.dots.reduce((best, dot) => !best || far(dot) < far(best) ? dot : best, null);
+  if (nearest && far(nearest) < 24) pick(nearest);
+};
+byId('places').onkeydown = (event) => {
+  const step = {ArrowRight: 1, ArrowLeft: -1, ArrowUp: 10, ArrowDown: -10}[event.key];
+  if (!step || view.dots.length === 0) return;
+  event.preventDefault();
+  const at = view.dots.findIndex((dot) => view.picked && dot.answer.serial === view.picked.serial);
+  pick(view.dots[Math.min(view.dots.length - 1, Math.max(0, at + step))]);
+};
+
+function takeToken() {
+  const given = new URLSearchParams(location.hash.slice(1)).get('token');
+  if (given) {
+    sessionStorage.setItem('token', given);
+    history.replaceState(null, '', location.pathname);  // so that it is in no screenshot
+  }
+  token = sessionStorage.getItem('token') || '';
+  byId('control').hidden = !token;
+}
+byId('pause').onclick = () => change('/api/control', {do: view.status.state === 'paused' ? 'resume' : 'pause'});
+byId('stop').onclick = () => { if (confirm('Stop the run?')) change('/api/control', {do: 'stop'}); };
+byId('threshold').onsubmit = (event) => {
+  event.preventDefault();
+  change('/api/control', {do: 'threshold', min_probability: Number(new FormData(event.target).get('least'))});
+};
+byId('mark').onsubmit = async (event) => {
+  event.preventDefault();
+  if (await change('/api/control', {do: 'mark', name: new FormData(event.target).get('name')})) event.target.reset();
+  view.marks = await ask('/api/marks');
+};
+
+function listen() {
+  const events = new EventSource('/api/events');
+  let first = true;
+  events.onopen = () => { first = true; };
+  events.onmessage = async (event) => {
+    const news = JSON.parse(event.data);
+    view.status = news.status;
+    // What was before, and what a slow line has missed.
+    if (first || takeNews(news)) {
+      first = false;
+      await takeHistory();
+      takeNews(news);
+    }
+    requestAnimationFrame(showAll);
+    if (news.status.state === 'ended') events.close();
+  };
+  events.onerror = () => {
+    byId('health').className = 'bad';
+    show('health', 'not connected: the run has ended, or the robot is out of reach');
+  };
+}
+
+byId('legend').replaceChildren(...['grab', 'describe', 'match'].map((name) => make('li', {class: 'swatch-' + name}, name)));
+window.addEventListener('resize', () => { if (view.status) draw(); });
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { if (view.status) draw(); });
+if (report) {
+  view.status = report.status;
+  takeHistory().then(showAll);
+  for (const id of ['truth']) byId(id).remove();
+  document.querySelector('footer').remove();
+} else {
+  takeToken();
+  listen();
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+// What the names of the JSON lines mean, and what a status says in a sentence.
+
+const GATES = ['no_frame', 'frame_error', 'warming_up', 'waiting', 'no_candidate', 'not_unique', 'new_place',
+  'unsure', 'match'];
+
+const HELP = {
+  match: 'the robot has been here before',
+  unsure: 'it may have been, but the evidence does not suffice',
+  new_place: 'it is somewhere new, for all that is known',
+  not_unique: 'there is a best place, but another one looks nearly as much alike',
+  no_candidate: 'nothing to compare with yet, or no line fits into the map',
+  warming_up: 'frames without an answer so far',
+  waiting: 'frames whose answer is not sure yet',
+  frame_error: 'frames that could not be read or described',
+  no_frame: 'times that no frame came in time',
+  frames: 'frames that were taken up',
+  deadline_missed: 'frames that broke a limit of the budget',
+  dropped: 'frames that were dropped for newer ones',
+  lost: 'frames that the camera never delivered',
+  overloaded: 'frames under the overload policy',
+  unseen: 'frames that went by too fast to be shown here; they are counted all the same',
+  places: 'places in the map, and how many it has room for',
+  candidates: 'rows of the map that got a score at this frame',
+  distances: 'descriptor distances computed for this frame',
+  k: 'candidate ranges in force; 0 where all rows are candidates',
+  full_search: 'whether all rows were candidates',
+  scanned: 'rows of the map looked at for this frame, to find the robot wherever it is',
+  memory_planned: 'bytes of map and matcher, taken before the first frame',
+  memory_used: 'bytes that the whole program has in memory',
+  probability: 'that the robot was there: of answers that say .9, nine in ten are right',
+  sequence: 'the camera\'s own number of the newest frame',
+  capture: 'the camera and its mode',
+  method: 'how places are searched',
+  ds: 'length of the sequences that are compared, in frames',
+};
+
+const number = (value) => value === null || value === undefined ? '–' : value.toLocaleString('en');
+const percent = (value) => value === null || value === undefined ? '–' : (100 * value).toFixed(1) + ' %';
+const bytes = (value) => value ? (value < 1e6 ? (value / 1e3).toFixed(0) + ' kB' : (value / 1e6).toFixed(1) + ' MB') : '–';
+const milliseconds = (value) => value === undefined || value === null ? '–' : value.toFixed(value < 10 ? 2 : 1);
+
+/// An answer in words.
+function sentence(status) {
+  const answer = status.answer;
+  const now = status.frame && status.frame.now;
+  if (status.state === 'paused') return 'Paused: no frame is taken.';
+  if (status.frame && status.frame.status === 'no_frame') return 'No frame comes: ' + (status.frame.fault || 'the camera is silent') + '.';
+  if (!answer) return status.frame ? 'Warming up: no frame has an answer yet.' : 'No frame has come yet.';
+  const at = 'frame ' + number(answer.frame);
+  switch (answer.status) {
+    case 'match': return `Been here before: ${at} is place ${number(answer.match)}.`;
+    case 'unsure': return `Not sure: ${at} may be place ${number(answer.match)}, but the evidence does not suffice.`;
+    case 'new_place': return 'Somewhere new, for all that is known.';
+    case 'not_unique': return `No answer: two places look alike; ${at} looks most like place ${number(answer.match)}.`;
+    case 'no_candidate': return 'No answer: there is nothing to compare with yet.';
+    case 'frame_error': return `No answer: ${at} could not be read` + (status.frame.fault ? ': ' + status.frame.fault : '') + '.';
+    default: return now ? `Waiting for more evidence; likeliest is place ${number(now.place)}.` : 'Warming up.';
+  }
+}
+
+/// An element with attributes and children; text is text, never markup.
+function make(name, attributes, ...children) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes || {})) {
+    if (value !== null && value !== undefined) element.setAttribute(key, value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+const byId = (id) => document.getElementById(id);
+const show = (id, text) => { const at = byId(id); if (at.textContent !== text) at.textContent = text; };
+
+/// Fills a list of terms; each has its help text.
+function fillTerms(id, terms) {
+  const list = byId(id);
+  if (list.childElementCount !== 2 * terms.length) {
+    list.replaceChildren(...terms.flatMap(([name]) => [
+      make('dt', {}, HELP[name] ? make('abbr', {title: HELP[name]}, name) : name), make('dd')]));
+  }
+  terms.forEach(([, value], i) => {
+    const at = list.children[2 * i + 1];
+    if (at.textContent !== value) at.textContent = value;
+  });
+}

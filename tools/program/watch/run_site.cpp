@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "program/watch/run_site.hpp"
+
+#include <charconv>
+#include <thread>
+#include <utility>
+
+#include "program/process/build_info.hpp"
+#include "program/watch/metrics.hpp"
+#include "program/watch/page_files.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+constexpr auto between_events = 100ms;
+constexpr auto still_looks = 3s;  // who has not asked for so long has gone
+
+http::Reply json_reply(const Json& json, int status = 200) {
+  // Names of files may be no UTF-8.
+  return {status, "application/json",
+          json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n'};
+}
+
+http::Reply fault(int status, std::string_view why) { return json_reply({{"error", why}}, status); }
+
+/// The value of `name=` in a query.
+std::string_view value_in(std::string_view query, std::string_view name) {
+  while (!query.empty()) {
+    const std::string_view part = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(part.size() + 1, query.size()));
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
+      return part.substr(name.size() + 1);
+  }
+  return {};
+}
+
+std::optional<std::uint64_t> number_in(std::string_view query, std::string_view name) {
+  const std::string_view text = value_in(query, name);
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void RunSite::add_place(const Image& image, std::uint64_t number) {
+  const auto small = std::make_unique<SmallPicture>();
+  const std::scoped_lock lock(mutex_);
+  if (shrink(image, number, *small)) places_.add(*small);
+}
+
+bool RunSite::looked_at() const { return Clock::now() - looked_at_ < still_looks; }
+
+void RunSite::take() {
+  while (const Answer* answer = watch_->answers().front()) {
+    view_.take(*answer);
+    watch_->answers().pop();
+  }
+  while (const Snapshot* snapshot = watch_->frames().front()) {
+    view_.take(*snapshot, seconds_now());
+    watch_->frames().pop();
+  }
+  while (const SmallPicture* picture = watch_->pictures().front()) {
+    frames_.add(*picture);
+    watch_->pictures().pop();
+  }
+  watch_->wishes.every.store(frames_.every(), std::memory_order_relaxed);
+  watch_->wishes.pictures.store(looked_at(), std::memory_order_relaxed);
+}
+
+void RunSite::tell() {
+  Json json = view_.event(told_frames_, told_answers_);
+  json["status"] = status();
+  event_ = std::make_shared<const std::string>(
+      "data: " + json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n");
+  ++event_number_;
+  told_frames_ = view_.frames_seen();
+  told_answers_ = view_.answers_seen();
+  told_at_ = Clock::now();
+  told_.notify_all();
+}
+
+void RunSite::follow() {
+  const std::scoped_lock lock(mutex_);
+  take();
+  if (!looked_at()) {
+    told_frames_ = view_.frames_seen();
+    told_answers_ = view_.answers_seen();
+    return;
+  }
+  const auto since = Clock::now() - told_at_;
+  const bool news = told_frames_ != view_.frames_seen() || told_answers_ != view_.answers_seen();
+  // Without news the times go on all the same: for how long no frame has come.
+  if (since >= (news ? Clock::duration(between_events) : Clock::duration(1s))) tell();
+}
+
+void RunSite::end() {
+  {
+    const std::scoped_lock lock(mutex_);
+    take();
+    ended_ = true;
+    tell();
+    if (!looked_at()) return;
+  }
+  std::this_thread::sleep_for(300ms);  // for the last word to be sent
+}
+
+std::shared_ptr<const std::string> RunSite::event(std::uint64_t& last) {
+  std::unique_lock lock(mutex_);
+  looked_at_ = Clock::now();
+  if (last == 0) {
+    // The first word says where this client comes in; what was before is its history.
+    last = event_number_;
+    Json json = view_.event(told_frames_, told_answers_);
+    json["status"] = status();
+    return std::make_shared<const std::string>(
+        "retry: 2000\ndata: " + json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n");
+  }
+  told_.wait_for(lock, 1s, [&] { return event_number_ > last; });
+  looked_at_ = Clock::now();
+  if (event_number_ == last) return nullptr;
+  last = event_number_;
+  return event_;
+}
+
+std::string RunSite::trouble() const {
+  return ended_ ? "the run has ended" : view_.trouble(seconds_now());
+}
+
+Json RunSite::status() const {
+  Json json;
+  const bool paused = watch_->wishes.pause.load(std::memory_order_relaxed);
+  json["state"] = ended_ ? "ended" : paused ? "paused" : "running";
+  json.update(view_.status());
+  if (const float least = watch_->wishes.min_probability.load(std::memory_order_relaxed);
+      least > 0.0F)
+    json["run"]["decision"]["min_probability"] = least;
+  json["map"]["memory_used"] = resident_memory();
+  const std::string why = trouble();
+  json["health"] = {{"ok", why.empty()}, {"why", why}};
+  json["newest_picture"] = frames_.newest() ? Json(*frames_.newest()) : Json(nullptr);
+  json["picture_of_every"] = frames_.every();
+  json["unseen"] = watch_->unseen();
+  return json;
+}
+
+http::Reply RunSite::metrics() const {
+  const http::ServerCounts counts = server_ != nullptr ? server_->counts() : http::ServerCounts{};
+  MonitorFacts facts;
+  facts.version = version_line();
+  Json run = view_.status()["run"];
+  facts.places_room = run.value("places", std::uint64_t{0});
+  facts.memory_planned = run.value("memory_planned", std::uint64_t{0});
+  facts.memory_used = resident_memory();
+  facts.unseen = watch_->unseen();
+  facts.connections = counts.connections;
+  facts.bytes_sent = counts.bytes_sent;
+  facts.healthy = trouble().empty();
+  return {200, "text/plain; version=0.0.4; charset=utf-8", program::metrics(view_.newest(), facts)};
+}
+
+Json RunSite::around(std::string_view query) const {
+  Json json;
+  if (const auto frame = number_in(query, "frame")) json["frame"] = frames_.around(*frame);
+  if (const auto place = number_in(query, "place"))
+    json["place"] = (own_places_ ? frames_ : places_).around(*place);
+  return json;
+}
+
+http::Reply RunSite::picture(std::string_view query) {
+  const auto number = number_in(query, "number");
+  const bool of_place = value_in(query, "of") == "place";
+  if (!number || (!of_place && value_in(query, "of") != "frame"))
+    return fault(400, "of=frame or of=place, and number=N, are wanted");
+  const PictureStore& store = of_place && !own_places_ ? places_ : frames_;
+  for (int tries = 0; tries < 60; ++tries) {
+    {
+      const std::scoped_lock lock(mutex_);
+      const auto known = encoded_.find({of_place && !own_places_, *number});
+      if (known != encoded_.end()) return {200, "image/jpeg", known->second};
+      const auto now = Clock::now();
+      while (!encoded_at_.empty() && now - encoded_at_.front() > 1s) encoded_at_.pop_front();
+      if (encoded_at_.size() < pictures_a_second) {
+        std::string file = store.jpeg(*number);
+        if (file.empty()) return fault(404, "no picture of it is kept");
+        encoded_at_.push_back(now);
+        constexpr std::size_t most_encoded = 400;
+        if (encoded_.size() >= most_encoded) encoded_.clear();
+        encoded_.emplace(std::pair{of_place && !own_places_, *number}, file);
+        return {200, "image/jpeg", std::move(file)};
+      }
+    }
+    std::this_thread::sleep_for(50ms);
+  }
+  return fault(503, "too many pictures are asked for; ask again");
+}
+
+http::Reply RunSite::get(std::string_view path, std::string_view query) {
+  const PageFiles page = page_files();
+  if (path == "/") return {200, "text/html; charset=utf-8", std::string(page.html)};
+  if (path == "/style.css") return {200, "text/css; charset=utf-8", std::string(page.style)};
+  if (path == "/page.js") return {200, "text/javascript; charset=utf-8", std::string(page.script)};
+  if (path == "/api/picture") return picture(query);
+  const std::scoped_lock lock(mutex_);
+  if (path == "/healthz") {
+    const std::string why = trouble();
+    return {why.empty() ? 200 : 503, "text/plain; charset=utf-8",
+            (why.empty() ? "ok" : why) + "\n"};
+  }
+  if (path == "/metrics") return metrics();
+  if (path == "/api/status") return json_reply(status());
+  if (path == "/api/history") return json_reply(view_.history());
+  if (path == "/api/marks") return json_reply(view_.marks());
+  if (path == "/api/pictures") return json_reply(around(query));
+  if (path == "/api/truth.csv") return {200, "text/csv; charset=utf-8", view_.truth_csv()};
+  if (path == "/api/loops") {
+    const std::uint64_t count = number_in(query, "count").value_or(most_loops_at_once);
+    return json_reply(
+        view_.loops(static_cast<std::size_t>(number_in(query, "first").value_or(0)),
+                    static_cast<std::size_t>(std::min<std::uint64_t>(count, most_loops_at_once))));
+  }
+  return fault(404, "there is no such page");
+}
+
+http::Reply RunSite::set_threshold(const Json& wish) {
+  const Json run = view_.status()["run"];
+  if (run.value("/decision/by"_json_pointer, "") != "probability")
+    return fault(409, "this run does not decide by probability");
+  const double least = wish.contains("min_probability") && wish["min_probability"].is_number()
+                           ? wish["min_probability"].get<double>()
+                           : 0.0;
+  if (!(least > 0.0 && least <= 1.0))
+    return fault(400, "min_probability is above 0, and 1 at most");
+  watch_->wishes.min_probability.store(static_cast<float>(least), std::memory_order_relaxed);
+  return json_reply({{"min_probability", least}});
+}
+
+http::Reply RunSite::control(const Json& wish) {
+  const std::string what = wish.value("do", "");
+  Wishes& wishes = watch_->wishes;
+  if (what == "pause" || what == "resume") {
+    wishes.pause.store(what == "pause", std::memory_order_relaxed);
+  } else if (what == "stop") {
+    wishes.stop.store(true, std::memory_order_relaxed);
+  } else if (what == "threshold") {
+    return set_threshold(wish);
+  } else if (what == "mark") {
+    if (!view_.mark(wish.value("name", "")))
+      return fault(409, "there is no frame yet, or no room for more marks");
+  } else {
+    return fault(400, "do is pause, resume, stop, threshold or mark");
+  }
+  return json_reply({{"done", what}});
+}
+
+http::Reply RunSite::judge(const Json& wish) {
+  const std::string word = wish.value("verdict", "none");
+  const Verdict verdict = word == "accepted"   ? Verdict::accepted
+                          : word == "rejected" ? Verdict::rejected
+                                               : Verdict::none;
+  if (!wish.contains("loop") || !wish["loop"].is_number_unsigned())
+    return fault(400, "loop is the number of a loop");
+  if (!view_.judge(wish["loop"].get<std::size_t>(), verdict))
+    return fault(404, "there is no such loop");
+  return json_reply({{"loop", wish["loop"]}, {"verdict", word}});
+}
+
+http::Reply RunSite::post(std::string_view path, std::string_view body) {
+  const Json wish = Json::parse(body, nullptr, false);
+  if (!wish.is_object()) return fault(400, "the body is no JSON object");
+  const std::scoped_lock lock(mutex_);
+  try {
+    if (path == "/api/control") return control(wish);
+    if (path == "/api/verdict") return judge(wish);
+  } catch (const Json::exception&) {
+    return fault(400, "a value is of another kind than it must be");
+  }
+  return fault(404, "there is nothing to be changed by that name");
+}
+
+}  // namespace seqloop::program

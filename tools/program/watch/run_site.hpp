@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "program/watch/picture_store.hpp"
+#include "program/watch/run_view.hpp"
+#include "seqloop/http/server.hpp"
+
+namespace seqloop::program {
+
+/// What a server shows of a run that goes on, and takes for it. One lock guards all of it; the loop
+/// never takes that lock.
+class RunSite : public http::Site {
+ public:
+  static constexpr std::size_t pictures_a_second = 10;
+  static constexpr std::size_t most_loops_at_once = 100;
+
+  /// @param watch lives longer
+  RunSite(Watch& watch, nlohmann::ordered_json run, bool own_places)
+      : watch_(&watch), own_places_(own_places), view_(std::move(run)) {}
+
+  /// @param server for its counts; lives as long as anybody asks
+  void serve_by(const http::Server& server) { server_ = &server; }
+
+  void add_place(const Image& image, std::uint64_t number);
+
+  /// Takes what the loop has handed over since, and makes an event of it where somebody looks.
+  void follow();
+  /// The same for the last time; those who look are told that it was.
+  void end();
+
+  [[nodiscard]] http::Reply get(std::string_view path, std::string_view query) override;
+  [[nodiscard]] http::Reply post(std::string_view path, std::string_view body) override;
+  [[nodiscard]] std::shared_ptr<const std::string> event(std::uint64_t& last) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Json = nlohmann::ordered_json;
+
+  void take();
+  void tell();
+  [[nodiscard]] bool looked_at() const;
+  [[nodiscard]] std::string trouble() const;
+  [[nodiscard]] Json status() const;
+  [[nodiscard]] http::Reply metrics() const;
+  [[nodiscard]] Json around(std::string_view query) const;
+  [[nodiscard]] http::Reply picture(std::string_view query);
+  [[nodiscard]] http::Reply control(const Json& wish);
+  [[nodiscard]] http::Reply set_threshold(const Json& wish);
+  [[nodiscard]] http::Reply judge(const Json& wish);
+
+  Watch* watch_;
+  bool own_places_;
+  const http::Server* server_ = nullptr;
+  mutable std::mutex mutex_;
+  std::condition_variable told_;
+  RunView view_;
+  PictureStore frames_;
+  PictureStore places_;
+  std::map<std::pair<bool, std::uint64_t>, std::string> encoded_;
+  std::deque<Clock::time_point> encoded_at_;
+  bool ended_ = false;
+
+  std::shared_ptr<const std::string> event_;
+  std::uint64_t event_number_ = 1;
+  std::uint64_t told_frames_ = 0;
+  std::uint64_t told_answers_ = 0;
+  Clock::time_point told_at_{};
+  Clock::time_point looked_at_{};
+};
+
+}  // namespace seqloop::program

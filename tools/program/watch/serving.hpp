@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "program/options/options.hpp"
+#include "program/watch/watch.hpp"
+
+namespace seqloop::program {
+
+/// Whether a run is shown in a browser, and to whom.
+struct ServeSettings {
+  std::optional<std::string> address;  ///< ADDR:PORT, empty: the default; none: it is not shown
+  std::filesystem::path token;         ///< file that holds it; empty: a new one
+};
+
+/// Flags `--serve` and `--serve-token`. @param settings lives as long as the table
+void add_serve_options(OptionTable& options, ServeSettings& settings);
+
+/// A run that can be looked at in a browser, and read by a monitor, while it goes on: pages, JSON,
+/// metrics, as the page of the room `platform/http` lists them. The loop hands snapshots to
+/// `watch()`; everything else happens in threads of the lowest priority, which no frame waits for.
+class Serving {
+ public:
+  /// Listens from here on, and says on stderr where, and by which token it may be controlled.
+  /// @param run what the run was started with, as `RunView` takes it
+  /// @param own_places whether places are frames of the drive itself
+  /// Throws SetupError: no such address, taken, no token in the file; a program without a server.
+  Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places);
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+  Serving(Serving&&) = delete;
+  Serving& operator=(Serving&&) = delete;
+  ~Serving();  ///< tells those who look that the run has ended, and closes
+
+  [[nodiscard]] Watch& watch() noexcept;
+
+  /// A picture of a place, before the first frame. Allocates: yes.
+  void add_place(const Image& image, std::uint64_t number);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seqloop::program

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "program/watch/watch.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace seqloop::program {
+namespace {
+
+constexpr Nanoseconds between_pictures = std::chrono::milliseconds(100);
+
+void add(StageCounts& stage, Nanoseconds took) noexcept {
+  const double ms = std::chrono::duration<double, std::milli>(took).count();
+  const auto bucket = std::ranges::lower_bound(bucket_ms, ms) - bucket_ms.begin();
+  ++stage.in[static_cast<std::size_t>(bucket)];
+  stage.sum += took;
+}
+
+}  // namespace
+
+bool shrink(const Image& image, std::uint64_t number, SmallPicture& small) noexcept {
+  if (image.data == nullptr || image.width <= 0 || image.height <= 0) return false;
+  const int step =
+      std::max({1, (image.width + SmallPicture::most_width - 1) / SmallPicture::most_width,
+                (image.height + SmallPicture::most_height - 1) / SmallPicture::most_height});
+  small.number = number;
+  small.width = image.width / step;
+  small.height = image.height / step;
+  if (small.width == 0 || small.height == 0) return false;
+  small.gray = image.format == PixelFormat::gray8;
+  const std::size_t channels = small.gray ? 1 : 3;
+  std::uint8_t* out = small.pixels.data();
+  for (int y = 0; y < small.height; ++y) {
+    const std::uint8_t* in = image.data +
+                             static_cast<std::size_t>(y * step + step / 2) * image.stride +
+                             static_cast<std::size_t>(step / 2) * channels;
+    for (int x = 0; x < small.width; ++x, in += static_cast<std::size_t>(step) * channels) {
+      out = std::copy_n(in, channels, out);
+    }
+  }
+  return true;
+}
+
+void Watch::count(const ProcessedFrame& processed, const RunSummary& summary) noexcept {
+  RunCounts& counts = next_.counts;
+  counts.frames = summary.frames();
+  for (std::size_t gate = 0; gate < gates; ++gate) {
+    counts.at[gate] = summary.at(static_cast<Gate>(gate));
+  }
+  counts.misses = summary.misses();
+  std::ranges::transform(summary.missed(), counts.missed.begin(),
+                         [](const auto& limit) { return limit.second; });
+  counts.dropped = summary.dropped();
+  counts.lost = summary.lost();
+  counts.overloaded = summary.overloaded();
+  if (processed.report.gate == Gate::no_frame) return;
+  const StageTimes& times = processed.times;
+  add(counts.stages[0], times.grab);
+  add(counts.stages[1], times.describe);
+  add(counts.stages[2], times.match);
+  add(counts.stages[3], times.total);
+}
+
+void Watch::publish(const ProcessedFrame& processed, const LoopState& state,
+                    const RunSummary& summary, std::size_t places, Nanoseconds moment) noexcept {
+  publish(processed.report.answers);
+  count(processed, summary);
+  next_.frame = processed;
+  next_.frame.frame.image = {};
+  next_.frame.frame.descriptor = {};
+  next_.frame.frame.fault = {};
+  next_.frame.frame.remark = {};
+  next_.frame.descriptor = {};
+  next_.frame.fault = {};
+  next_.frame.report.answers = {};
+  next_.fault.assign({processed.fault});
+  next_.remark.assign({processed.frame.remark});
+  next_.state = state;
+  next_.places = places;
+  if (!frames_.push(next_)) unseen_.fetch_add(1, std::memory_order_relaxed);
+  publish_picture(processed, moment);
+}
+
+void Watch::publish(std::span<const Answer> answers) noexcept {
+  for (const Answer& answer : answers) {
+    if (!answers_.push(answer)) unseen_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void Watch::publish_picture(const ProcessedFrame& processed, Nanoseconds moment) noexcept {
+  const std::uint64_t number = processed.report.newest;
+  const bool kept = number % wishes.every.load(std::memory_order_relaxed) == 0;
+  const bool due = !picture_at_ || moment - *picture_at_ >= between_pictures;
+  if (!kept && !(due && wishes.pictures.load(std::memory_order_relaxed))) return;
+  if (!shrink(processed.frame.image, number, picture_)) return;
+  picture_at_ = moment;
+  // Where there is no room, the next one will be as good.
+  static_cast<void>(pictures_.push(picture_));
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "program/run/run_summary.hpp"
+#include "seqloop/fixed_text.hpp"
+#include "seqloop/linux/detail/return_queue.hpp"
+#include "seqloop/pipeline.hpp"
+
+namespace seqloop::program {
+
+/// Upper ends of the buckets in which durations are counted, in milliseconds; the last one has
+/// none.
+inline constexpr std::array<double, 13> bucket_ms{.1, .2, .5,  1,   2,   5,   10,
+                                                  20, 40, 100, 200, 500, 1000};
+
+/// Names of the stages, as `run` has them.
+inline constexpr std::array<const char*, 4> stage_names{"grab", "describe", "match", "total"};
+
+/// How long a stage took, over the whole run.
+struct StageCounts {
+  std::array<std::uint64_t, bucket_ms.size() + 1> in{};  ///< frames by bucket, each counted once
+  Nanoseconds sum{0};
+};
+
+/// What a run has counted so far.
+struct RunCounts {
+  std::uint64_t frames = 0;
+  std::array<std::uint64_t, gates> at{};  ///< by gate, as `RunSummary::at`
+  std::uint64_t misses = 0;
+  std::array<std::uint64_t, 5> missed{};  ///< age, describe, grab, match, total
+  std::uint64_t dropped = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t overloaded = 0;
+  std::array<StageCounts, stage_names.size()> stages{};
+};
+
+/// All that is shown of a frame, in fixed memory.
+struct Snapshot {
+  ProcessedFrame frame;  ///< without its picture, descriptor, answers and texts
+  LoopState state;
+  FixedText fault;
+  FixedText remark;
+  RunCounts counts;
+  std::size_t places = 0;  ///< in the map
+};
+
+/// A picture on its way to whoever looks: at most this large, every n-th pixel of the loop's own.
+struct SmallPicture {
+  static constexpr int most_width = 160;   // pixels
+  static constexpr int most_height = 120;  // pixels
+
+  std::uint64_t number = 0;  ///< of the frame
+  int width = 0;             ///< pixels
+  int height = 0;            ///< pixels
+  bool gray = true;          ///< a byte a pixel; otherwise B, G, R
+  std::array<std::uint8_t, std::size_t{3} * most_width * most_height> pixels{};  ///< row by row
+};
+
+/// Takes every n-th pixel of a picture, so that it fits. Work: its pixels. Allocates: never.
+/// @return false where there is no picture
+bool shrink(const Image& image, std::uint64_t number, SmallPicture& small) noexcept;
+
+/// What people wish of a loop. Set by any thread; the loop looks before each frame.
+struct Wishes {
+  std::atomic<bool> pause{false};
+  std::atomic<bool> stop{false};
+  std::atomic<float> min_probability{0.0F};  ///< 0: as configured
+  std::atomic<bool> pictures{false};         ///< somebody looks, so that each frame's is wanted
+  std::atomic<std::uint64_t> every{1};       ///< frames of which one picture is kept
+};
+
+/// From a loop to whoever watches it: neither waits for the other. What finds no room, because
+/// nobody took what was there, is counted and left out.
+class Watch {
+ public:
+  /// The loop's side. Work: a copy of a frame's numbers, at most a small picture.
+  /// Allocates: never. System calls: none.
+  /// @param moment now, on the loop's clock: pictures for who looks come ten times a second
+  void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
+               std::size_t places, Nanoseconds moment) noexcept;
+  /// Answers that were due at the end.
+  void publish(std::span<const Answer> answers) noexcept;
+
+  // The watcher's side, one thread.
+  using Frames = live::ReturnQueue<Snapshot, 512>;
+  using Answers = live::ReturnQueue<Answer, 8192>;
+  using Pictures = live::ReturnQueue<SmallPicture, 32>;
+  [[nodiscard]] Frames& frames() noexcept { return frames_; }
+  [[nodiscard]] Answers& answers() noexcept { return answers_; }
+  [[nodiscard]] Pictures& pictures() noexcept { return pictures_; }
+  /// Frames and answers that found no room.
+  [[nodiscard]] std::uint64_t unseen() const noexcept { return unseen_; }
+
+  Wishes wishes;
+
+ private:
+  void count(const ProcessedFrame& processed, const RunSummary& summary) noexcept;
+  void publish_picture(const ProcessedFrame& processed, Nanoseconds moment) noexcept;
+
+  Frames frames_;
+  Answers answers_;
+  Pictures pictures_;
+  std::atomic<std::uint64_t> unseen_{0};
+
+  // The loop's.
+  Snapshot next_;
+  SmallPicture picture_;
+  std::optional<Nanoseconds> picture_at_;
+};
+
+}  // namespace seqloop::program
