@@ -98,7 +98,7 @@ class Serve : public test::Program {
 };
 
 TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
-  start("--pace live --fps 100 --budget-total 10000");
+  start("--pace live --fps 20 --budget-total 10000");
   EXPECT_TRUE(get("/").find("<title>SeqLoop</title>") != std::string::npos);
   EXPECT_TRUE(get("/page.js").find("'use strict'") != std::string::npos);
   EXPECT_EQ(get("/page.js").find("innerHTML"), std::string::npos) << "names are text";

@@ -132,7 +132,8 @@ std::shared_ptr<const std::string> RunSite::event(std::uint64_t& last) {
 }
 
 std::string RunSite::trouble() const {
-  return ended_ ? "the run has ended" : view_.trouble(seconds_now());
+  if (ended_) return "the run has ended";
+  return watch_->wishes.pause ? "" : view_.trouble(seconds_now());
 }
 
 Json RunSite::status() const {

@@ -50,8 +50,8 @@ function axes({context, width, height}, x0, x1, y1, words) {
   }
   context.textAlign = 'center';
   context.textBaseline = 'top';
-  for (const at of ticks(x1 - x0, width < 500 ? 3 : 6)) {
-    if (x(at + x0) < width - 30) context.fillText(Math.round(at + x0).toLocaleString('en'), x(at + x0), height - MARGIN.bottom + 5);
+  for (const at of words ? ticks(x1 - x0, width < 500 ? 3 : 6) : []) {
+    if (x(at + x0) < width - 12 - context.measureText(words).width) context.fillText(Math.round(at + x0).toLocaleString('en'), x(at + x0), height - MARGIN.bottom + 5);
   }
   context.textAlign = 'right';
   context.fillText(words, width - MARGIN.right, height - MARGIN.bottom + 5);
@@ -75,7 +75,7 @@ function drawPlaces(canvas, answers, ownPlaces, picked, marks) {
     context.stroke();
     context.setLineDash([]);
   }
-  context.fillStyle = colour('line');
+  context.fillStyle = colour('grab');
   for (const one of answers) {
     if (one.status === 'unsure' && one.match !== null) context.fillRect(x(one.frame) - 1, y(one.match) - 1, 2, 2);
   }
@@ -133,7 +133,7 @@ function drawTimes(canvas, frames, budget) {
   // The budget is shown where it is near; otherwise the bars would be too small to be seen.
   const near = budget && budget < 4 * most;
   const top = Math.max(most, near ? budget * 1.1 : 0, 1e-3);
-  const {x, y} = axes(area, 0, 300, top, 'newest 300');
+  const {x, y} = axes(area, 0, 300, top, '');
   const {context} = area;
   const step = (x(300) - x(0)) / 300;
   frames.forEach((one, i) => {

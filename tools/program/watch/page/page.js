@@ -43,14 +43,17 @@ function showStages(status) {
 function showStatus(status) {
   const {run, counts, frame, map, health} = status;
   const gates = counts.gates;
-  show('source', [run.source, run.reference && 'in ' + run.reference].filter(Boolean).join(' '));
+  const drives = [run.source, run.reference].filter(Boolean);
+  show('source', drives.map(lastPart).join(' in '));
+  byId('source').title = drives.join(' in ');
   show('version', run.conditions || '');
+  const word = status.state === 'paused' ? 'paused: no frame is taken' : 'running well';
   byId('health').className = status.state === 'ended' ? 'soft' : health.ok ? status.state === 'paused' ? 'warn' : 'good' : 'bad';
   show('health', report ? 'A run that is over.' : status.state === 'ended' ? 'The run has ended.' :
-    health.ok ? (status.state === 'paused' ? 'paused' : 'running well') : 'in trouble: ' + health.why);
-  show('sentence', sentence(status));
+    health.ok ? word : 'in trouble: ' + health.why);
+  show('sentence', report ? `${number(gates.match)} of ${number(counts.frames)} frames were recognised.` : sentence(status));
   const answer = status.answer;
-  show('detail', answer && answer.match !== null && answer.status !== 'new_place' ?
+  show('detail', !report && answer && answer.match !== null && answer.status !== 'new_place' ?
     [answer.probability !== null && `probability ${percent(answer.probability)}`,
       answer.uniqueness !== null && `uniqueness ${answer.uniqueness.toFixed(2)}`,
       answer.score !== null && `score ${answer.score.toFixed(3)}`].filter(Boolean).join(' · ') : '');
@@ -59,7 +62,7 @@ function showStatus(status) {
     ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
     ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)]]);
   const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
-  fillTerms('map', [['places', number(map.places) + (run.places ? ' of ' + number(run.places) : '')],
+  fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
     ['k', frame ? number(frame.k) : '–'],
     ['scanned', map.scanned ? number(map.scanned) + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
@@ -67,7 +70,7 @@ function showStatus(status) {
     ['method', run.method || '–'], ['ds', number(run.ds)], ...(run.capture ? [['capture', run.capture]] : []),
     ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
   showStages(status);
-  show('pause', status.state === 'paused' ? 'resume' : 'pause');
+  if (!report) show('pause', status.state === 'paused' ? 'resume' : 'pause');
 }
 
 // Places are frames of the drive itself, as far as can be told.
@@ -108,7 +111,7 @@ function pick(dot) {
   const {frame, match, probability} = dot.answer;
   show('places-picked', `Frame ${number(frame)} is place ${number(match)}` +
     (probability === null ? '.' : `, probability ${probability.toFixed(3)}.`));
-  byId('picked').hidden = false;
+  byId('picked').hidden = Boolean(report);
   showPair(byId('picked'), frame, match, true);
   draw();
 }
@@ -136,17 +139,19 @@ function takeToken() {
   token = sessionStorage.getItem('token') || '';
   byId('control').hidden = !token;
 }
-byId('pause').onclick = () => change('/api/control', {do: view.status.state === 'paused' ? 'resume' : 'pause'});
-byId('stop').onclick = () => { if (confirm('Stop the run?')) change('/api/control', {do: 'stop'}); };
-byId('threshold').onsubmit = (event) => {
-  event.preventDefault();
-  change('/api/control', {do: 'threshold', min_probability: Number(new FormData(event.target).get('least'))});
-};
-byId('mark').onsubmit = async (event) => {
-  event.preventDefault();
-  if (await change('/api/control', {do: 'mark', name: new FormData(event.target).get('name')})) event.target.reset();
-  view.marks = await ask('/api/marks');
-};
+function control() {
+  byId('pause').onclick = () => change('/api/control', {do: view.status.state === 'paused' ? 'resume' : 'pause'});
+  byId('stop').onclick = () => { if (confirm('Stop the run?')) change('/api/control', {do: 'stop'}); };
+  byId('threshold').onsubmit = (event) => {
+    event.preventDefault();
+    change('/api/control', {do: 'threshold', min_probability: Number(new FormData(event.target).get('least'))});
+  };
+  byId('mark').onsubmit = async (event) => {
+    event.preventDefault();
+    if (await change('/api/control', {do: 'mark', name: new FormData(event.target).get('name')})) event.target.reset();
+    view.marks = await ask('/api/marks');
+  };
+}
 
 function listen() {
   const events = new EventSource('/api/events');
@@ -176,9 +181,12 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { if
 if (report) {
   view.status = report.status;
   takeHistory().then(showAll);
-  for (const id of ['truth']) byId(id).remove();
-  document.querySelector('footer').remove();
+  for (const id of ['truth', 'monitor', 'control']) byId(id).remove();
+  byId('pair').hidden = true;
+  byId('pair').parentElement.className = 'full';
+  show('h-now', 'In short');
 } else {
   takeToken();
+  control();
   listen();
 }

@@ -41,11 +41,13 @@ const percent = (value) => value === null || value === undefined ? '–' : (100 
 const bytes = (value) => value ? (value < 1e6 ? (value / 1e3).toFixed(0) + ' kB' : (value / 1e6).toFixed(1) + ' MB') : '–';
 const milliseconds = (value) => value === undefined || value === null ? '–' : value.toFixed(value < 10 ? 2 : 1);
 
+/// The last part of a path: `drive` of `/data/drive`.
+const lastPart = (path) => path.replace(/\/+$/, '').split('/').pop() || path;
+
 /// An answer in words.
 function sentence(status) {
   const answer = status.answer;
   const now = status.frame && status.frame.now;
-  if (status.state === 'paused') return 'Paused: no frame is taken.';
   if (status.frame && status.frame.status === 'no_frame') return 'No frame comes: ' + (status.frame.fault || 'the camera is silent') + '.';
   if (!answer) return status.frame ? 'Warming up: no frame has an answer yet.' : 'No frame has come yet.';
   const at = 'frame ' + number(answer.frame);
