@@ -9,7 +9,7 @@ async function main([path, file, folder]) {
     const page = await open(browser, {viewport: {width, height: 800}, colorScheme, offline: true});
     await page.goto('file://' + file);
     await page.waitForFunction(() => view.dots.length > 20);
-    assert.ok((await page.textContent('#source')).includes('<b>query'));
+    await page.waitForFunction(() => document.getElementById('source').textContent.includes('<b>query'));
     assert.ok((await page.locator('#loops li').count()) > 0);
     const {left, top} = await page.evaluate(() => view.dots[0]);
     await page.click('#places', {position: {x: left, y: top}});

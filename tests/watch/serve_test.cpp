@@ -23,7 +23,7 @@ class Serve : public test::Program {
   void SetUp() override {
     const oracle::Vectors lap = oracle::drive(11, 150, 24, 0.2F);
     files::NpyWriter writer(file("q.npy"), 24);
-    for (int n = 0; n < 2; ++n) {
+    for (int n = 0; n < 4; ++n) {
       for (const auto& row : lap) writer.append(row);
     }
     writer.commit();
@@ -73,7 +73,9 @@ class Serve : public test::Program {
   template <class Condition>
   bool until(Condition holds) const {
     for (int n = 0; n < 600; ++n) {
-      if (holds(json(get("/api/status")))) return true;
+      const std::string reply = get("/api/status");
+      if (!reply.starts_with("HTTP/1.1 200")) return false;  // it is over
+      if (holds(json(reply))) return true;
       std::this_thread::sleep_for(50ms);
     }
     return false;
@@ -98,36 +100,42 @@ class Serve : public test::Program {
 };
 
 TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
-  start("--pace live --fps 20 --budget-total 10000");
+  start("--pace live --fps 40 --budget-total 10000 --min-probability 1");
+  ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 5; }));
+  ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
+  ASSERT_TRUE(until([](const Json& status) { return status["state"] == "paused"; }));
   EXPECT_TRUE(get("/").find("<title>SeqLoop</title>") != std::string::npos);
   EXPECT_TRUE(get("/page.js").find("'use strict'") != std::string::npos);
   EXPECT_EQ(get("/page.js").find("innerHTML"), std::string::npos) << "names are text";
   EXPECT_TRUE(get("/healthz").ends_with("\r\n\r\nok\n"));
-  ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
-  ASSERT_TRUE(until([](const Json& status) { return status["state"] == "paused"; }));
-  EXPECT_TRUE(post("/api/control", {{"do", "resume"}}).starts_with("HTTP/1.1 200"));
-  ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 20; }));
-  EXPECT_TRUE(
-      post("/api/control", {{"do", "mark"}, {"name", "<door>"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_NE(get("/metrics").find("seqloop_frames_total "), std::string::npos);
+  const auto answered = [&](const std::string& path, const Json& wish) {
+    const std::string reply = post(path, wish);
+    return reply.size() < 12 ? "nothing" : reply.substr(9, 3);
+  };
+  EXPECT_EQ(answered("/api/control", {{"do", "mark"}, {"name", "<door>"}}), "200");
   EXPECT_EQ(json(get("/api/marks"))[0]["name"], "<door>");
-  EXPECT_TRUE(post("/api/control", {{"do", "threshold"}, {"min_probability", 2}})
-                  .starts_with("HTTP/1.1 400"));
-  EXPECT_TRUE(post("/api/control", {{"do", "threshold"}, {"min_probability", .5}})
-                  .starts_with("HTTP/1.1 200"));
-  EXPECT_TRUE(post("/api/control", {{"do", 7}}).starts_with("HTTP/1.1 400"));
-  EXPECT_TRUE(post("/api/control", Json::array()).starts_with("HTTP/1.1 400"));
-  EXPECT_TRUE(post("/api/other", Json::object()).starts_with("HTTP/1.1 404"));
+  EXPECT_EQ(answered("/api/control", {{"do", "threshold"}, {"min_probability", 2}}), "400");
+  EXPECT_EQ(answered("/api/control", {{"do", 7}}), "400");
+  EXPECT_EQ(answered("/api/control", Json::array()), "400");
+  EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", "rejected"}}), "404");
+  EXPECT_EQ(answered("/api/other", Json::object()), "404");
+  EXPECT_TRUE(get("/api/picture?of=frame&number=1").starts_with("HTTP/1.1 404")) << "no pictures";
+  EXPECT_TRUE(get("/api/picture").starts_with("HTTP/1.1 400"));
+  EXPECT_EQ(answered("/api/control", {{"do", "threshold"}, {"min_probability", .5}}), "200");
   const Json status = json(get("/api/status"));
   EXPECT_EQ(status["run"]["source"], "q.npy");
   EXPECT_EQ(status["run"]["method"], "o-seqcnnslam");
   EXPECT_GT(status["run"]["memory_planned"], 1000);
   EXPECT_EQ(status["run"]["decision"]["min_probability"], .5);
   EXPECT_TRUE(status["frame"].contains("latency_ms"));
-  EXPECT_NE(get("/metrics").find("seqloop_frames_total "), std::string::npos);
-  EXPECT_TRUE(get("/api/picture?of=frame&number=1").starts_with("HTTP/1.1 404"))
-      << "there are no pictures";
-  EXPECT_TRUE(get("/api/picture").starts_with("HTTP/1.1 400"));
-  EXPECT_TRUE(post("/api/control", {{"do", "stop"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(status["counts"]["gates"]["match"], 0);
+  EXPECT_EQ(answered("/api/control", {{"do", "resume"}}), "200");
+  EXPECT_TRUE(until([](const Json& now) { return now["counts"]["gates"]["match"] > 0; }))
+      << "the new threshold holds";
+  EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", "accepted"}}), "200");
+  EXPECT_NE(get("/api/truth.csv").find("query,reference\n"), std::string::npos);
+  EXPECT_EQ(answered("/api/control", {{"do", "stop"}}), "200");
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
 }
 

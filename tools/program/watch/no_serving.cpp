@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where cpp-httplib was missing when the program was built.
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "program/watch/serving.hpp"

@@ -16,6 +16,8 @@ using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
 constexpr auto between_events = 100ms;
+constexpr auto between_pairs = 1500ms;
+constexpr auto between_lists = 6s;
 constexpr auto still_looks = 3s;  // who has not asked for so long has gone
 
 http::Reply json_reply(const Json& json, int status = 200) {
@@ -76,7 +78,26 @@ void RunSite::take() {
   watch_->wishes.pictures.store(looked_at(), std::memory_order_relaxed);
 }
 
+void RunSite::choose_shown() {
+  const auto now = Clock::now();
+  if (now - shown_.pair_at >= between_pairs || ended_) {
+    shown_.pair_at = now;
+    const std::optional<Answer>& answer = view_.last_answer();
+    const bool known = answer && answer->match && answer->gate != Gate::new_place;
+    // Where no place is known, what the camera sees now.
+    shown_.frame = known              ? Json(answer->frame)
+                   : frames_.newest() ? Json(*frames_.newest())
+                                      : Json();
+    shown_.place = known ? Json(answer->match->place) : Json();
+  }
+  if (now - shown_.loops_at >= between_lists || ended_) {
+    shown_.loops_at = now;
+    shown_.loops = view_.loop_count();
+  }
+}
+
 void RunSite::tell() {
+  choose_shown();
   Json json = view_.event(told_frames_, told_answers_);
   json["status"] = status();
   event_ = std::make_shared<const std::string>(
@@ -119,6 +140,7 @@ std::shared_ptr<const std::string> RunSite::event(std::uint64_t& last) {
   if (last == 0) {
     // The first word says where this client comes in; what was before is its history.
     last = event_number_;
+    choose_shown();
     Json json = view_.event(told_frames_, told_answers_);
     json["status"] = status();
     return std::make_shared<const std::string>(
@@ -147,6 +169,7 @@ Json RunSite::status() const {
   json["map"]["memory_used"] = resident_memory();
   const std::string why = trouble();
   json["health"] = {{"ok", why.empty()}, {"why", why}};
+  json["shown"] = {{"frame", shown_.frame}, {"place", shown_.place}, {"loops", shown_.loops}};
   json["newest_picture"] = frames_.newest() ? Json(*frames_.newest()) : Json(nullptr);
   json["picture_of_every"] = frames_.every();
   json["unseen"] = watch_->unseen();

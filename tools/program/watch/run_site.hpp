@@ -46,8 +46,19 @@ class RunSite : public http::Site {
   using Clock = std::chrono::steady_clock;
   using Json = nlohmann::ordered_json;
 
+  /// What all who look are to see pictures of: the same for all, and not changed so often that
+  /// pictures would be out of date before they have come.
+  struct Shown {
+    Json frame;
+    Json place;
+    std::size_t loops = 0;
+    Clock::time_point pair_at{};
+    Clock::time_point loops_at{};
+  };
+
   void take();
   void tell();
+  void choose_shown();
   [[nodiscard]] bool looked_at() const;
   [[nodiscard]] std::string trouble() const;
   [[nodiscard]] Json status() const;
@@ -69,6 +80,7 @@ class RunSite : public http::Site {
   std::map<std::pair<bool, std::uint64_t>, std::string> encoded_;
   std::deque<Clock::time_point> encoded_at_;
   bool ended_ = false;
+  Shown shown_;
 
   std::shared_ptr<const std::string> event_;
   std::uint64_t event_number_ = 1;

@@ -76,6 +76,7 @@ class RunView {
   [[nodiscard]] const Snapshot& newest() const noexcept { return newest_; }
   [[nodiscard]] std::uint64_t frames_seen() const noexcept { return frames_seen_; }
   [[nodiscard]] std::uint64_t answers_seen() const noexcept { return answers_seen_; }
+  [[nodiscard]] const std::optional<Answer>& last_answer() const noexcept { return last_answer_; }
   [[nodiscard]] std::size_t loop_count() const noexcept { return loop_list_.size(); }
   [[nodiscard]] nlohmann::ordered_json& run() noexcept { return run_; }
 

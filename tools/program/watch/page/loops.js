@@ -18,7 +18,7 @@ async function change(path, wish) {
 
 /// A picture that is asked for again where the server has too much to do.
 function picture(of, n, what) {
-  const image = make('img', {alt: `${what} ${n}`, width: 160, height: 120, loading: 'lazy'});
+  const image = make('img', {alt: `${what} ${n}`, width: 160, height: 120});
   let tries = 0;
   image.onerror = () => {
     if (++tries > 3) image.replaceWith(make('div', {class: 'none'}, 'no picture is kept'));
@@ -55,9 +55,17 @@ async function showPair(element, frame, place, neighbours) {
   const query = [frame === null ? '' : 'frame=' + frame, place === null ? '' : 'place=' + place].join('&');
   const around = report ? {} : await ask('/api/pictures?' + query).catch(() => ({}));
   if (element.dataset.pair !== wish) return;  // something newer is wanted by now
-  element.replaceChildren(side('frame', 'frame', frame, around.frame || [], neighbours),
+  const sides = [side('frame', 'frame', frame, around.frame || [], neighbours),
     place === null ? make('figure', {}, make('div', {class: 'none'}, 'no place'), make('figcaption', {}, 'place –'))
-                   : side('place', 'place', place, around.place || [], neighbours));
+                   : side('place', 'place', place, around.place || [], neighbours)];
+  if (neighbours && element.childElementCount > 0) {
+    // What is there stays until the new pictures have come, or take too long.
+    const images = sides.flatMap((one) => [...one.querySelectorAll('img')]);
+    await Promise.race([Promise.all(images.map((image) => image.decode().catch(() => {}))),
+      new Promise((done) => setTimeout(done, 3000))]);
+    if (element.dataset.pair !== wish) return;
+  }
+  element.replaceChildren(...sides);
 }
 
 const list = {count: 0, page: 0, shown: ''};

@@ -88,21 +88,9 @@ function showAll() {
   const status = view.status;
   showStatus(status);
   draw();
-  showLoops(status.loops.listed);
-  if (report || document.hidden) return;
-  const answer = status.answer;
-  const place = answer && answer.match !== null && answer.status !== 'new_place' ? answer.match : null;
-  // The newest picture where there is no place; otherwise the frame that the answer is about.
-  const frame = place === null ? status.newest_picture : answer.frame;
-  if (frame !== null && frame !== undefined) showPairSometimes(frame, place);
-}
-
-let pairAt = 0;
-/// Three times a second: a person cannot judge pairs faster.
-function showPairSometimes(frame, place) {
-  if (Date.now() - pairAt < 330) return;
-  pairAt = Date.now();
-  showPair(byId('pair'), frame, place, true);
+  showLoops(report ? status.loops.listed : status.shown.loops);
+  const {frame, place} = report ? {frame: null} : status.shown;
+  if (frame !== null && !document.hidden) showPair(byId('pair'), frame, place, true);
 }
 
 function pick(dot) {
