@@ -82,17 +82,20 @@ Matrix read_npy(const std::filesystem::path& path) {
               static_cast<std::streamsize>(bytes.size()));
   if (!stream) throw SetupError(Fault{name, "cannot be read to its end"});
 
+  check_finite(matrix, name);
+  return matrix;
+}
+
+void check_finite(const Matrix& matrix, const std::string& name) {
   const auto bad = std::find_if_not(matrix.values.begin(), matrix.values.end(),
                                     [](float value) { return std::isfinite(value); });
-  if (bad != matrix.values.end()) {
-    const auto place = static_cast<std::size_t>(bad - matrix.values.begin());
-    throw SetupError(Fault{name,
-                           std::string("holds ") + (std::isnan(*bad) ? "NaN" : "infinity") +
-                               " in row " + std::to_string(place / matrix.columns) + ", column " +
-                               std::to_string(place % matrix.columns) + " (both from 0)",
-                           "describe that frame again or leave it out"});
-  }
-  return matrix;
+  if (bad == matrix.values.end()) return;
+  const auto place = static_cast<std::size_t>(bad - matrix.values.begin());
+  throw SetupError(Fault{name,
+                         std::string("holds ") + (std::isnan(*bad) ? "NaN" : "infinity") +
+                             " in row " + std::to_string(place / matrix.columns) + ", column " +
+                             std::to_string(place % matrix.columns) + " (both from 0)",
+                         "describe that frame again or leave it out"});
 }
 
 NpyWriter::NpyWriter(const std::filesystem::path& path, std::size_t columns)

@@ -15,12 +15,12 @@ OUTSIDE = {"fstream", "iostream", "filesystem", "thread", "mutex", "condition_va
 
 # The outside worlds, and our own rooms that none of them may look into.
 WORLDS = {"bags", "files", "http", "linux", "opencv", "sqlite", "turbojpeg"}
-OURS = {"seqloop", "evaluation", "experiment", "program", "street", "synthetic"}
+OURS = {"seqloop", "evaluation", "experiment", "program", "python", "street", "synthetic"}
 
 # Rooms of tools/, and the others that each looks into.
 TOOLS = {"evaluation": (), "synthetic": (), "program": ("evaluation", "synthetic"),
          "experiment": ("evaluation", "program"), "peer_bench": ("program",),
-         "cost": ("synthetic",), "street": ()}
+         "cost": ("synthetic",), "street": (), "python": ("evaluation", "program")}
 
 # Which instructions the processor has, and their names: for kernels alone.
 INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}

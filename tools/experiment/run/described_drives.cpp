@@ -120,7 +120,10 @@ void DescribedDrives::describe(const Wanted& wanted) const {
   const auto source = open(wanted.drive);
   files::NpyWriter out(file(wanted.drive, wanted.descriptor), describer->size());
   program::Progress silent;
-  program::describe_drive(wanted.drive, *source, *describer, out, silent);
+  program::describe_drive(
+      wanted.drive, *source, *describer, [&out](std::span<const float> row) { out.append(row); },
+      silent);
+  out.commit();
 }
 
 }  // namespace seqloop::experiment

@@ -20,12 +20,16 @@ constexpr std::uint64_t most_missing = 1'000;
 }  // namespace
 
 DescribedCount describe_drive(const std::string& name, FrameSource& source, Describer& describer,
-                              files::NpyWriter& out, Progress& progress,
+                              const DescriptorSink& out, Progress& progress,
                               const DescribeUntil& until) {
   DescribedCount count;
   std::vector<float> descriptor(describer.size());
   const std::vector<float> nothing(describer.size(), 0.0F);
-  const auto whole = [&] { return until.rows > 0 && out.rows() >= until.rows; };
+  const auto whole = [&] { return until.rows > 0 && count.rows >= until.rows; };
+  const auto append = [&](std::span<const float> row) {
+    out(row);
+    ++count.rows;
+  };
   bool silent = false;
   Frame frame;
   while (!whole()) {
@@ -42,7 +46,7 @@ DescribedCount describe_drive(const std::string& name, FrameSource& source, Desc
       progress.tell(fmt::format("{}: frames come again, after {} that are missing", name, gap));
     }
     for (std::uint64_t row = 0; row < std::min(gap, most_missing) && !whole(); ++row) {
-      out.append(nothing);
+      append(nothing);
       ++count.missing;
     }
     if (whole()) break;
@@ -54,15 +58,14 @@ DescribedCount describe_drive(const std::string& name, FrameSource& source, Desc
     } else if (described.blank) {
       ++count.blank;
     }
-    out.append(descriptor);
+    append(descriptor);
     progress.step();
   }
   progress.done();
   tell_notes(name, source);
-  if (out.rows() == count.unreadable + count.missing) {
+  if (count.rows == count.unreadable + count.missing) {
     throw SetupError({name, "none of its frames can be read"});
   }
-  out.commit();
   return count;
 }
 

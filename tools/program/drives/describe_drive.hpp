@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
 
 #include "program/process/progress.hpp"
 #include "seqloop/describer.hpp"
-#include "seqloop/files/npy_file.hpp"
 #include "seqloop/frame_source.hpp"
 
 namespace seqloop::program {
@@ -17,19 +19,23 @@ struct DescribeUntil {
                              ///< otherwise it is the end of everything
 };
 
-/// Frames that are not like the others.
+/// Takes the descriptors of a drive, [D] each.
+using DescriptorSink = std::function<void(std::span<const float>)>;
+
+/// Rows, and frames that are not like the others.
 struct DescribedCount {
+  std::size_t rows = 0;
   std::size_t unreadable = 0;  ///< rows of zeros, which keep the rows in step with the frames
   std::size_t missing = 0;     ///< likewise, of frames lost or dropped, up to 1,000 a gap
   std::size_t blank = 0;       ///< without any feature
 };
 
-/// Writes the descriptor of every frame of a drive, one row each, and commits.
+/// Hands over the descriptor of every frame of a drive, one row each.
 /// @param name of the drive, for messages
-/// Throws SetupError when no frame can be read, files::IoError, and when the program is
+/// Throws SetupError when no frame can be read, what `out` throws, and when the program is
 /// interrupted where that is not the end that `until` wants.
 DescribedCount describe_drive(const std::string& name, FrameSource& source, Describer& describer,
-                              files::NpyWriter& out, Progress& progress,
+                              const DescriptorSink& out, Progress& progress,
                               const DescribeUntil& until = {});
 
 }  // namespace seqloop::program

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "program/drives/file_decoder.hpp"
+#include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
 #include "program/process/say.hpp"
 #include "seqloop/bags/bag.hpp"
@@ -19,23 +20,6 @@
 
 namespace seqloop::program {
 namespace {
-
-/// Brings every row to unit length, as Algorithm 1 wants it, and says so where one was not.
-void normalise_rows(files::Matrix& matrix, const std::filesystem::path& name) {
-  std::size_t changed = 0;
-  for (std::size_t row = 0; row < matrix.rows; ++row) {
-    const auto values = std::span(matrix.values).subspan(row * matrix.columns, matrix.columns);
-    const double squares = squared_norm(values);
-    // What describe wrote is unit to rounding and must stay as it is, bit by bit.
-    if (squares == 0.0 || std::abs(squares - 1.0) < 1e-5) continue;
-    normalise(values);
-    ++changed;
-  }
-  if (changed > 0) {
-    say("{}: {} of {} rows were not unit length and have been made so", name.string(), changed,
-        matrix.rows);
-  }
-}
 
 void set_training(std::vector<std::filesystem::path>& drives, std::string_view text) {
   drives.clear();
@@ -114,7 +98,11 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
 
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
   files::Matrix descriptors = files::read_npy(path);
-  if (difference == Difference::euclidean) normalise_rows(descriptors, path);
+  const std::size_t changed = difference == Difference::euclidean ? normalise_rows(descriptors) : 0;
+  if (changed > 0) {
+    say("{}: {} of {} rows were not unit length and have been made so", path.string(), changed,
+        descriptors.rows);
+  }
   return descriptors;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -102,6 +103,23 @@ evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults) {
     faults.push_back({"unlisted", "it goes with a truth that lists frames", "--truth T.csv"});
   }
   return truth;
+}
+
+JudgedBy judge_by(const TruthSettings& settings, evaluation::Truth truth, std::uint64_t frames,
+                  std::span<const evaluation::Answer> answers, Faults& faults) {
+  if (by_identity(settings)) {
+    if (frames == 0) {
+      for (const evaluation::Answer& answer : answers) frames = std::max(frames, answer.query + 1);
+    }
+    return {evaluation::Truth::identity(frames), frames};
+  }
+  if (frames > 0 && frames < truth.frames()) {
+    faults.push_back({"frames",
+                      fmt::format("{} is fewer than have a truth, {}", frames, truth.frames()),
+                      "leave --frames out"});
+  }
+  if (frames == 0) frames = truth.frames();
+  return {std::move(truth), frames};
 }
 
 evaluation::ThresholdOn parse_threshold(std::string_view text) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "evaluation/measures.hpp"
@@ -34,6 +36,20 @@ void add_truth_options(OptionTable& options, TruthSettings& settings);
 
 /// The truth, unless it is identity, for which somebody has to say how long it is. Adds faults.
 [[nodiscard]] evaluation::Truth read_truth(const TruthSettings& settings, Faults& faults);
+
+/// A truth, and how many queries have one.
+struct JudgedBy {
+  evaluation::Truth truth;
+  std::uint64_t frames = 0;
+};
+
+/// Says how long identity is: as many frames as there are, or as the answers reach.
+/// @param truth  what `read_truth` made of the settings, unless it is identity
+/// @param frames queries that have a truth; 0: as many as the truth says
+/// Adds a fault where these are fewer than have a truth.
+[[nodiscard]] JudgedBy judge_by(const TruthSettings& settings, evaluation::Truth truth,
+                                std::uint64_t frames, std::span<const evaluation::Answer> answers,
+                                Faults& faults);
 
 /// What `--threshold-on` says. Throws std::invalid_argument: why not.
 [[nodiscard]] evaluation::ThresholdOn parse_threshold(std::string_view text);

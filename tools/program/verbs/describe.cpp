@@ -53,9 +53,12 @@ void describe(const DescribeSettings& settings, Faults faults) {
   }
 
   Progress progress("describing", source->frame_count());
-  const DescribedCount count = describe_drive(settings.source.string(), *source, *describer, *out,
-                                              progress, {settings.frames, camera});
-  say("{} frames of {} values in {}", out->rows(), describer->size(), settings.out.string());
+  const DescribedCount count =
+      describe_drive(settings.source.string(), *source, *describer,
+                     [&out](std::span<const float> row) { out->append(row); }, progress,
+                     {settings.frames, camera});
+  out->commit();
+  say("{} frames of {} values in {}", count.rows, describer->size(), settings.out.string());
   if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
   if (count.missing > 0) {
     say("{} frames that were lost or dropped are rows of zeros", count.missing);

@@ -31,15 +31,6 @@ struct EvalSettings {
   std::size_t jobs = 0;  ///< 0: as many as there are cores
 };
 
-/// Identity needs to know how many queries there are: as many as asked, or as the matches reach.
-std::uint64_t identity_frames(const EvalSettings& settings,
-                              const std::vector<evaluation::Answer>& answers) {
-  if (settings.frames > 0) return settings.frames;
-  std::uint64_t frames = 0;
-  for (const evaluation::Answer& answer : answers) frames = std::max(frames, answer.query + 1);
-  return frames;
-}
-
 nlohmann::ordered_json as_json(const evaluation::Reliability& reliability) {
   auto bins = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < reliability.size(); ++i) {
@@ -119,28 +110,20 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
           settings.matches, settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
     });
   }
-  evaluation::Truth truth = read_truth(settings.truth, faults);
-  const bool identity = by_identity(settings.truth);
-  if (!identity && settings.frames > 0 && settings.frames < truth.frames()) {
-    faults.push_back(
-        {"frames",
-         fmt::format("{} is fewer than have a truth, {}", settings.frames, truth.frames()),
-         "leave --frames out"});
-  }
+  const JudgedBy judge = judge_by(settings.truth, read_truth(settings.truth, faults),
+                                  settings.frames, answers, faults);
   refuse(std::move(faults));
-  if (identity) truth = evaluation::Truth::identity(identity_frames(settings, answers));
-
-  const std::uint64_t frames = settings.frames > 0 ? settings.frames : truth.frames();
-  if (identity && settings.frames == 0) {
+  if (by_identity(settings.truth) && settings.frames == 0) {
     say("recall is over the first {} frames only, as far as the answers reach; --frames N says how "
         "many the drive has",
-        frames);
+        judge.frames);
   }
-  const evaluation::Measures measures = measure(answers, truth, settings.truth.tolerance, frames);
+  const evaluation::Measures measures =
+      measure(answers, judge.truth, settings.truth.tolerance, judge.frames);
   if (settings.json) {
-    fmt::print("{}\n", as_json(measures, frames).dump(2));
+    fmt::print("{}\n", as_json(measures, judge.frames).dump(2));
   } else {
-    print_words(measures, frames, how_near(settings.truth));
+    print_words(measures, judge.frames, how_near(settings.truth));
   }
 }
 

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "program/drives/drive_length.hpp"
 #include "program/drives/drives.hpp"
 #include "program/drives/map_builder.hpp"
+#include "program/drives/match_drive.hpp"
 #include "program/map/lasting_map.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/process/interruption.hpp"
@@ -22,7 +19,6 @@
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/detector.hpp"
-#include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -47,61 +43,14 @@ std::string precise(Number value) {
   return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
 }
 
-/// What the search for a frame, as the centre of its window, took.
-struct Searched {
-  std::uint64_t candidates = 0;
-  std::size_t k = 0;
-  std::uint64_t distances = 0;
-};
-
 /// A row of the match list.
-std::string csv_row(const Answer& answer, const Searched& searched) {
-  const Match& match = *answer.match;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", answer.frame, match.place,
+std::string csv_row(const MatchedFrame& frame) {
+  const Match& match = *frame.answer.match;
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", frame.answer.frame, match.place,
                      precise(match.score), precise(match.uniqueness), precise(match.velocity),
-                     match.head, searched.candidates, searched.k, searched.distances,
-                     precise(answer.probability), answer.gate == Gate::match ? 1 : 0);
+                     match.head, frame.candidates, frame.k, frame.distances,
+                     precise(frame.answer.probability), frame.answer.gate == Gate::match ? 1 : 0);
 }
-
-/// The answers of a recording.
-class MatchList {
- public:
-  /// @param frames of the recording
-  MatchList(const MatcherConfig& config, std::size_t frames)
-      : after_centre_(config.sequence_length - config.sequence_length / 2), searched_(frames) {}
-
-  void add(const FrameReport& report) {
-    add(report.answers);
-    if (report.newest < after_centre_) return;
-    searched_[static_cast<std::size_t>(report.newest - after_centre_)] = {
-        report.work.candidates, report.k, report.work.distances};
-  }
-
-  void add(std::span<const Answer> answers) {
-    std::ranges::copy_if(answers, std::back_inserter(answers_),
-                         [](const Answer& answer) { return answer.match.has_value(); });
-  }
-
-  [[nodiscard]] std::size_t size() const noexcept { return answers_.size(); }
-  [[nodiscard]] std::size_t accepted() const noexcept {
-    return static_cast<std::size_t>(std::ranges::count(answers_, Gate::match, &Answer::gate));
-  }
-
-  /// A frame that was sure may have been answered before one that came before it.
-  void write(files::OutputFile& out) {
-    std::ranges::sort(answers_, {}, &Answer::frame);
-    out.write(
-        "query,match,score,uniqueness,velocity,head,candidates,k,distances,probability,accepted\n");
-    for (const Answer& answer : answers_) {
-      out.write(csv_row(answer, searched_[static_cast<std::size_t>(answer.frame)]));
-    }
-  }
-
- private:
-  std::size_t after_centre_;
-  std::vector<Answer> answers_;
-  std::vector<Searched> searched_;  // by frame
-};
 
 void match(const MatchSettings& settings, Faults faults) {
   take_interruptions();
@@ -126,22 +75,16 @@ void match(const MatchSettings& settings, Faults faults) {
   } else {
     collect(faults, [&] { out = std::make_unique<files::OutputFile>(settings.out); });
   }
-  if (query && reference && query->columns != reference->columns) {
-    faults.push_back({"reference, query",
-                      fmt::format("{} values in a row of one, {} in a row of the other",
-                                  reference->columns, query->columns),
-                      "describe both with the same model and layer"});
-  }
   std::unique_ptr<LastingMap> lasting;
   if (query && !settings.map.file.empty() && faults.empty()) {
     collect(faults,
             [&] { lasting = open_map(settings.map, config, query->columns, "descriptors"); });
   }
-  if (query && (closing || reference) && validate(config).empty()) {
+  if (query && (closing || reference)) {
     // Into a map that lasts a drive is added that closes no loop, too.
     MatcherConfig one = config;
     if (!settings.map.file.empty()) one.use = Use::localise;
-    check_length(faults, one, query->rows, reference ? reference->rows : query->rows);
+    check_match(faults, one, reference ? &*reference : nullptr, *query);
   }
   refuse(std::move(faults));
 
@@ -160,38 +103,24 @@ void match(const MatchSettings& settings, Faults faults) {
   if (lasting) lasting->load(map);
   Detector detector(config, map);
   if (lasting) lasting->begin(map, config, settings.matcher.method);
-  MatchList list(config, query->rows);
   Progress progress("matching", query->rows);
-  std::size_t blank_frames = 0;
-  std::vector<std::span<const float>> frames;
-  std::vector<FrameReport> reports(config.frames_at_once);
-  for (std::size_t row = 0; row < query->rows; row += frames.size()) {
-    stop_if_interrupted();
-    frames.clear();
-    const std::size_t last = std::min(row + config.frames_at_once, query->rows);
-    for (std::size_t next = row; next < last; ++next) {
-      frames.push_back(query->row(next));
-      if (blank(config.difference, frames.back())) ++blank_frames;
-    }
-    const std::size_t taken = detector.steps(frames, reports);
-    for (const FrameReport& report : std::span(reports).first(taken)) {
-      progress.step();
-      list.add(report);
-      if (lasting) {
-        lasting->note(detector, report.newest, report.newest,
-                      static_cast<double>(report.newest) / frames_a_second, report.answers);
-      }
-    }
+  MatchWatch watch{&progress, stop_if_interrupted};
+  std::optional<std::string> unsaved;
+  if (lasting) {
+    watch.report = [&](const FrameReport& report) {
+      lasting->note(detector, report.newest, report.newest,
+                    static_cast<double>(report.newest) / frames_a_second, report.answers);
+    };
+    watch.rest = [&](std::span<const Answer> rest) { unsaved = lasting->finish(detector, rest); };
   }
-  const std::span<const Answer> rest = detector.finish();
-  list.add(rest);
-  const auto unsaved = lasting ? lasting->finish(detector, rest) : std::nullopt;
-  progress.done();
-  list.write(*out);
+  const MatchedDrive matched = match_frames(detector, config, *query, watch);
+  out->write(
+      "query,match,score,uniqueness,velocity,head,candidates,k,distances,probability,accepted\n");
+  for (const MatchedFrame& frame : matched.frames) out->write(csv_row(frame));
   out->commit();
-  tell_blank(settings.query, blank_frames, query->rows);
-  say("{} of {} frames answered, {} of them accepted, in {}", list.size(), query->rows,
-      list.accepted(), settings.out.string());
+  tell_blank(settings.query, matched.blank_frames, query->rows);
+  say("{} of {} frames answered, {} of them accepted, in {}", matched.frames.size(), query->rows,
+      matched.accepted(), settings.out.string());
   if (lasting) say("{}: {}", settings.map.file.string(), lasting->summary());
   if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
 }

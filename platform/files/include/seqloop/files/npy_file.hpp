@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "seqloop/files/output_file.hpp"
@@ -27,6 +28,9 @@ struct Matrix {
 /// Throws SetupError with every fault of the header, or else the first one of the data. What the
 /// header claims is compared with the size of the file before anything is allocated.
 [[nodiscard]] Matrix read_npy(const std::filesystem::path& path);
+
+/// Throws SetupError where a value is NaN or infinite: the first one. @param name for the message
+void check_finite(const Matrix& matrix, const std::string& name);
 
 /// Writes a `.npy` file (format 1.0, float32, `[N, D]`) row by row, N being known only at the end.
 /// The file appears under its name at `commit`, as OutputFile does it; a pipe cannot be written.

@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: MIT
+"""`import seqloop`: what it loads, what it refuses, and that it answers as the program does.
+
+Wants PYTHONPATH, and in SEQLOOP_BINARY and SEQLOOP_STREET_BINARY the programs.
+"""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy
+
+import seqloop
+
+SEED = 7
+
+
+def program(*arguments: object, check: bool = True) -> subprocess.CompletedProcess:
+    return subprocess.run([os.environ["SEQLOOP_BINARY"], *map(str, arguments)], check=check, capture_output=True,
+                          text=True)
+
+
+def unit(rows: numpy.ndarray) -> numpy.ndarray:
+    return (rows / numpy.linalg.norm(rows, axis=1, keepdims=True)).astype(numpy.float32)
+
+
+def drives(places: int = 200, size: int = 48) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """A drive, and the same again with noise."""
+    random = numpy.random.default_rng(SEED)
+    first = random.standard_normal((places, size))
+    return unit(first), unit(first + .2 * random.standard_normal(first.shape))
+
+
+def as_csv(matches: seqloop.Matches) -> str:
+    """As the program writes it."""
+    def text(value: object) -> str:
+        return str(value) if isinstance(value, (numpy.integer, int)) else f"{value:.9g}"
+    names = ["query", "match", "score", "uniqueness", "velocity", "head", "candidates", "k", "distances",
+             "probability", "accepted"]
+    lines = [",".join(names)]
+    for row in zip(*(getattr(matches, name) for name in names)):
+        lines.append(",".join(text(int(value) if isinstance(value, numpy.bool_) else value) for value in row))
+    return "\n".join(lines) + "\n"
+
+
+def written(frame: int, answer: seqloop.Answer) -> tuple:
+    match = answer.match
+    return (frame, match.place, numpy.float32(match.score), answer.gate == "match") if match else (frame, None)
+
+
+class Imports(unittest.TestCase):
+    def test_opencv_is_loaded_when_a_describer_is_asked_for(self) -> None:
+        code = ("import seqloop, numpy\n"
+                "loaded = lambda: 'libopencv' in open('/proc/self/maps').read()\n"
+                "seqloop.PlaceMap(9, 4), seqloop.settings(), dir(seqloop)\n"
+                "assert not loaded(), 'too early'\n"
+                "seqloop.Describer()\n"
+                "assert loaded(), 'never'\n")
+        subprocess.run([sys.executable, "-B", "-c", code], check=True)
+
+    def test_the_core_needs_few_libraries(self) -> None:
+        needed = subprocess.run(["readelf", "-d", seqloop._core.__file__], check=True, capture_output=True, text=True)
+        libraries = [line.split("[")[1].split("]")[0] for line in needed.stdout.splitlines() if "NEEDED" in line]
+        for library in libraries:
+            self.assertRegex(library, r"^(libfmt|libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so")
+
+    def test_help_is_enough_to_begin(self) -> None:
+        shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop)"], check=True,
+                               capture_output=True, text=True).stdout
+        for word in ("PlaceMap", "Describer", "describe_drive", "float32 [D]", "unit length", "match(reference",
+                     "SetupError", "settings()"):
+            self.assertIn(word, shown)
+
+    def test_no_other_name_is_known(self) -> None:
+        with self.assertRaisesRegex(AttributeError, "nothing"):
+            seqloop.nothing
+
+
+class Settings(unittest.TestCase):
+    def test_they_are_the_flags_of_the_program(self) -> None:
+        shown = program("match", "--help-all").stdout
+        flags = {line.split()[0][2:].replace("-", "_") for line in shown.splitlines() if line.strip().startswith("--")}
+        others = {"reference", "query", "out", "config", "help_all", "version"}
+        self.assertEqual(set(seqloop.settings()), flags - others)
+        shown = program("describe", "--help-all").stdout
+        for name in seqloop.Describer.settings():
+            self.assertIn("--" + name.replace("_", "-"), shown)
+
+    def test_every_fault_is_told_at_once(self) -> None:
+        reference, query = drives()
+        with self.assertRaises(ValueError) as raised:
+            seqloop.match(reference[:, :5], query, dss=3, ds=-1, method="foo", max_uniqueness=.3, patience=4,
+                          standardise="maybe", paper=3, vmin=True)
+        told = str(raised.exception)
+        for word in ("'dss': is no setting; did you mean 'ds'?", "ds: '-1' is no whole number", "method: 'foo'",
+                     "max_uniqueness: the probability decides; min_probability, or decide_by uniqueness",
+                     "standardise: 'maybe'", "paper: 3 is not of its type", "vmin: True", "reference, query: 5 values"):
+            self.assertIn(word, told)
+        self.assertEqual(len(raised.exception.faults), len(told.splitlines()))
+        self.assertIn(("'dss'", "is no setting", "did you mean 'ds'?"), raised.exception.faults)
+
+    def test_values_of_many_types(self) -> None:
+        reference, query = drives()
+        usual = as_csv(seqloop.match(reference, query, ds=10, vmin=.9, standardise=False))
+        for same in ({"ds": "10", "vmin": "0.9", "standardise": "off"},
+                     {"ds": numpy.int64(10), "vmin": numpy.float32(.9), "standardise": False, "k": None}):
+            self.assertEqual(as_csv(seqloop.match(reference, query, **same)), usual)
+
+    def test_a_model_that_is_not_there(self) -> None:
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.Describer(model=pathlib.Path("/nowhere.onnx"), lay="x")
+        self.assertEqual(len(raised.exception.faults), 2)
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self) -> None:
+        self.reference, self.query = drives()
+        self.places = seqloop.PlaceMap(200, 48, ds=10)
+        self.places.add_drive(self.reference)
+        self.detector = seqloop.Detector(self.places)
+
+    def test_step_takes_one_form_and_says_how_to_make_it(self) -> None:
+        wide = numpy.zeros((48, 2), numpy.float32)
+        wide[:, 0] = self.query[0]
+        for descriptor, words in ((self.query[0].astype(numpy.float64), "float64.*ascontiguousarray"),
+                                  (self.query[0].astype(">f4"), "ascontiguousarray"),
+                                  (wide[:, 0], "side by side"),
+                                  (self.query[0][:9], r"\(9,\)"),
+                                  (self.query[:1], r"\(1, 48\)"),
+                                  (numpy.zeros((), numpy.float32), r"\(\)"),
+                                  (self.query[0] * 2, "length is 2")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                self.detector.step(descriptor)
+        self.assertEqual(self.detector.step(self.query[0]).newest, 0, "what was refused is no frame")
+        with self.assertRaises(TypeError):
+            self.detector.step("descriptor")
+
+    def test_read_only_arrays_are_read_where_they_lie(self) -> None:
+        frozen = self.query.copy()
+        frozen.flags.writeable = False
+        self.assertEqual(self.detector.step(frozen[3]).gate, "warming_up")
+
+    def test_frames_that_say_nothing(self) -> None:
+        broken = self.query[0].copy()
+        broken[3] = numpy.nan
+        for frame, descriptor in enumerate((None, broken, numpy.full(48, numpy.inf, numpy.float32),
+                                            numpy.zeros(48, numpy.float32))):
+            report = self.detector.step(descriptor)
+            self.assertEqual((report.newest, report.gate), (frame, "frame_error"))
+
+    def test_whole_drives(self) -> None:
+        usual = as_csv(seqloop.match(self.reference, self.query, ds=10))
+        strided = numpy.repeat(self.query, 2, axis=1)[:, ::2]
+        self.assertFalse(strided.flags.c_contiguous)
+        self.assertEqual(as_csv(seqloop.match(numpy.asfortranarray(self.reference), strided, ds=10)), usual)
+        self.assertEqual(as_csv(seqloop.match(self.reference, self.query.astype(numpy.float64), ds=10)), usual)
+        broken = self.query.copy()
+        broken[4, 2] = numpy.nan
+        for query, words in ((broken, "query: holds NaN in row 4, column 2"), (self.query[0], r"\(48,\)"),
+                             (self.query.astype(numpy.int32), "int32"), (self.query[:0], r"\(0, 48\)"),
+                             (self.query[:5], "shorten ds")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                seqloop.match(self.reference, query, ds=10)
+
+    def test_pictures(self) -> None:
+        describer = seqloop.Describer()
+        random = numpy.random.default_rng(SEED)
+        picture = random.integers(0, 255, (90, 160, 3), numpy.uint8)
+        descriptor = describer.describe(picture)
+        self.assertEqual((descriptor.dtype, descriptor.shape), (numpy.float32, (describer.size,)))
+        self.assertAlmostEqual(float(numpy.linalg.norm(descriptor)), 1.0, places=5)
+        padded = numpy.zeros((90, 200, 3), numpy.uint8)
+        padded[:, :160] = picture
+        self.assertTrue((describer.describe(padded[:, :160]) == descriptor).all())
+        self.assertFalse((describer.describe(numpy.zeros((90, 160), numpy.uint8))).any(), "blank")
+        for bad, words in ((picture.astype(numpy.float32), "float32"), (picture[..., ::-1], "side by side"),
+                           (picture[::-1], "side by side"), (picture[:, ::2], "side by side"),
+                           (picture[:0], r"\(0, 160, 3\)"), (picture[..., :2], r"\(90, 160, 2\)")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                describer.describe(bad)
+
+
+class Lives(unittest.TestCase):
+    def test_a_detector_keeps_its_map(self) -> None:
+        reference, query = drives()
+        detectors = []
+        for _ in range(3):
+            places = seqloop.PlaceMap(200, 48)
+            places.add_drive(reference)
+            detectors.append(seqloop.Detector(places))
+            del places
+        found = [[written(answer.frame, answer) for row in query for answer in detector.step(row).answers]
+                 for detector in detectors]
+        self.assertEqual(found[0], found[1])
+        self.assertGreater(len(found[0]), 150)
+
+    def test_answers_outlive_the_step(self) -> None:
+        reference, query = drives()
+        places = seqloop.PlaceMap(200, 48, ds=10)
+        places.add_drive(reference)
+        detector = seqloop.Detector(places)
+        reports = [detector.step(row) for row in query]
+        late = detector.finish()
+        frames = [answer.frame for report in reports for answer in report.answers] + [answer.frame for answer in late]
+        self.assertEqual(sorted(frames), list(range(200)))
+        self.assertEqual(reports[50].newest, 50)
+        self.assertIn("Match(place=", repr([report.answers for report in reports]))
+
+    def test_what_a_map_refuses(self) -> None:
+        reference, _ = drives()
+        empty = seqloop.PlaceMap(200, 48)
+        with self.assertRaisesRegex(seqloop.SetupError, "no places"):
+            seqloop.Detector(empty)
+        with self.assertRaisesRegex(seqloop.SetupError, "the map's have 48"):
+            empty.add_drive(reference[:, :9])
+        with self.assertRaisesRegex(seqloop.SetupError, "max_places"):
+            seqloop.PlaceMap(20, 48).add_drive(reference)
+        empty.add_drive(reference)
+        with self.assertRaisesRegex(seqloop.SetupError, "holds a drive"):
+            empty.add_drive(reference)
+        closing = seqloop.PlaceMap(200, 48, True)
+        with self.assertRaisesRegex(seqloop.SetupError, "closing loops"):
+            closing.add_drive(reference)
+        seqloop.Detector(closing)
+        with self.assertRaisesRegex(seqloop.SetupError, "another detector"):
+            seqloop.Detector(closing)
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.PlaceMap(-1, 0, ds=-1)
+        self.assertEqual(len(raised.exception.faults), 3)
+        self.assertEqual((len(empty), empty.capacity, empty.descriptor_size), (200, 200, 48))
+
+    def test_threads_share_a_map_and_wait_for_each_other_at_a_detector(self) -> None:
+        reference, query = drives()
+        places = seqloop.PlaceMap(200, 48)
+        places.add_drive(reference)
+        alone = [seqloop.Detector(places).step(row).newest for row in query[:1]]
+        self.assertEqual(alone, [0])
+        detectors = [seqloop.Detector(places) for _ in range(2)]
+        shared = seqloop.Detector(places)
+        found: list[list[tuple]] = [[], []]
+        newest: list[int] = []
+
+        def drive(which: int) -> None:
+            for row in query:
+                found[which] += [written(answer.frame, answer) for answer in detectors[which].step(row).answers]
+                newest.append(shared.step(row).newest)
+
+        threads = [threading.Thread(target=drive, args=(which,)) for which in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found[0], found[1])
+        self.assertEqual(sorted(newest), list(range(2 * len(query))))
+
+
+class SameAsTheProgram(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.work = pathlib.Path(cls.folder.name)
+        subprocess.run([os.environ["SEQLOOP_STREET_BINARY"], "--out", cls.work / "street", "--frames", "120", "--size",
+                        "160x90"], check=True, capture_output=True)
+        cls.drives = [cls.work / "street" / name for name in ("reference", "query")]
+        for drive in cls.drives:
+            program("describe", "--source", drive, "--out", drive.with_suffix(".npy"))
+        cls.reference, cls.query = (numpy.load(drive.with_suffix(".npy")) for drive in cls.drives)
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.folder.cleanup()
+
+    def test_descriptors(self) -> None:
+        describer = seqloop.Describer()
+        for drive, described in zip(self.drives, (self.reference, self.query)):
+            self.assertEqual(describer.describe_drive(drive).tobytes(), described.tobytes())
+        self.assertEqual(describer.describe_drive(str(self.drives[0]), frames=3).tobytes(),
+                         self.reference[:3].tobytes())
+        program("describe", "--source", self.drives[0], "--descriptor", "patches", "--out", self.work / "patches.npy")
+        patches = seqloop.Describer(descriptor="patches").describe_drive(self.drives[0])
+        self.assertEqual(patches.tobytes(), numpy.load(self.work / "patches.npy").tobytes())
+        with self.assertRaisesRegex(seqloop.SetupError, "numpy.load"):
+            describer.describe_drive(self.work / "patches.npy")
+
+    def test_answers(self) -> None:
+        names = [drive.with_suffix(".npy") for drive in self.drives]
+        for settings in ({}, {"method": "seqcnnslam", "ds": 10}, {"paper": True}, {"method": "single"}):
+            flags = []
+            for name, value in settings.items():
+                flags += ["--" + name] + ([] if value is True else [str(value)])
+            out = self.work / "matches.csv"
+            program("match", "--reference", names[0], "--query", names[1], "--out", out, *flags)
+            self.assertEqual(as_csv(seqloop.match(self.reference, self.query, **settings)), out.read_text())
+        program("match", "--query", names[0], "--out", out, "--exclude", 20)
+        self.assertEqual(as_csv(seqloop.match(None, self.reference, exclude=20)), out.read_text())
+
+    def test_answers_frame_by_frame(self) -> None:
+        matches = seqloop.match(self.reference, self.query)
+        places = seqloop.PlaceMap(len(self.reference), self.reference.shape[1])
+        places.add_drive(self.reference)
+        detector = seqloop.Detector(places)
+        answers = [answer for row in self.query for answer in detector.step(row).answers] + detector.finish()
+        stepped = [(answer.frame, answer.match.place, numpy.float32(answer.probability), answer.gate == "match")
+                   for answer in sorted(answers, key=lambda answer: answer.frame) if answer.match]
+        self.assertEqual(stepped, list(zip(matches.query, matches.match, matches.probability, matches.accepted)))
+        self.assertGreater(matches.accepted.sum(), 20)
+
+    def test_measures(self) -> None:
+        out = self.work / "matches.csv"
+        out.write_text(as_csv(matches := seqloop.match(self.reference, self.query)))
+        truth = self.work / "truth.csv"
+        rows = numpy.array([[query, query] for query in range(20, 110)])
+        truth.write_text("query,reference\n" + "".join(f"{a},{b}\n" for a, b in rows))
+        for given, flags in ((rows, ["--truth", truth]), (str(truth), ["--truth", truth]), ("identity", []),
+                             ("no-revisit", ["--truth", "no-revisit"])):
+            flags += ["--threshold-on", "probability", "--tolerance", 3]
+            measures = seqloop.evaluate(matches, given, threshold_on="probability", tolerance=3)
+            said = json.loads(program("eval", "--matches", out, "--json", *flags).stdout)
+            for name in said.keys() - {"reliability"}:
+                ours = getattr(measures, name)
+                # The program read probabilities of nine digits.
+                same = numpy.isnan(ours) if said[name] is None else abs(ours - said[name]) < 1e-8
+                self.assertTrue(same, f"{name}: {ours}, {said[name]}")
+        self.assertEqual(measures.curve.shape[1], 2)
+
+    def test_measures_refuse(self) -> None:
+        matches = seqloop.match(self.reference, self.query)
+        for truth, settings, words in ((numpy.zeros((3, 4), int), {}, r"\(3, 4\)"),
+                                       (numpy.zeros((3, 2)), {}, "float64"),
+                                       (-numpy.ones((3, 2), int), {}, "0 or more"),
+                                       ("/nowhere.csv", {"threshold_on": "speed", "toll": 3}, "(?s)toll.*speed.*/nowh"),
+                                       (numpy.zeros((0, 2), int), {}, "truth")):
+            with self.assertRaisesRegex(ValueError, words):
+                seqloop.evaluate(matches, truth, **settings)
+
+    def test_the_difference_matrix(self) -> None:
+        matrix = seqloop.differences(self.reference, self.query, standardise=False, arithmetic="float")
+        naive = numpy.linalg.norm(self.reference[:, None] - self.query[None], axis=2)
+        self.assertLess(numpy.abs(matrix - naive).max(), 1e-4)
+        self.assertEqual(matrix.dtype, numpy.float32)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,45 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# mypy --strict is content with the package and with code that uses it, and finds a mistake in it.
+# Usage: types.sh SOURCE PYTHON    exit code 77 where mypy is missing
+set -eu
+source=$1 python=$2
+command -v mypy >/dev/null || { echo "not installed: mypy"; [ -z "${SEQLOOP_REQUIRE_DATA:-}" ] && exit 77; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cat >"$work/good.py" <<'END'
+import numpy
+import seqloop
+
+describer = seqloop.Describer(model="net.onnx", input_size=(320, 180))
+drive = describer.describe_drive("drive")
+matches = seqloop.match(None, drive, ds=20, full_map="thin", standardise=False)
+where: list[int] = matches.match[matches.accepted].tolist()
+places = seqloop.PlaceMap(max_places=100, descriptor_size=describer.size, close_loops=True, patience=30)
+detector = seqloop.Detector(places)
+for answer in detector.step(drive[0]).answers + detector.finish():
+    if answer.gate == "match" and answer.match is not None:
+        print(answer.match.place + 1, answer.probability)
+measures = seqloop.evaluate(matches, numpy.array([[1, 2]]), tolerance=2)
+print(measures.recall.hex(), seqloop.differences(drive, drive).shape)
+END
+cat >"$work/bad.py" <<'END'
+import numpy
+import seqloop
+
+detector = seqloop.Detector(seqloop.PlaceMap(9, 4))
+wrong = numpy.zeros(4, numpy.float64)
+detector.step(wrong)
+report = detector.step(None)
+report.gate == "matched"
+report.answers[0].match.place
+END
+MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --cache-dir "$work/cache" \
+  "$source/tools/python/seqloop" "$work/good.py"
+if MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --cache-dir "$work/cache" \
+  "$work/bad.py" >"$work/found"; then
+  echo "mypy found nothing wrong"
+  exit 1
+fi
+cat "$work/found"
+[ "$(grep -c 'error:' "$work/found")" = 3 ]

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "python/bindings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace seqloop::python {
+namespace {
+
+namespace py = pybind11;
+
+using program::Option;
+using program::OptionTable;
+using program::ValueKind;
+
+std::string keyword(std::string name) {
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+/// `--decide-by uniqueness` becomes `decide_by uniqueness`.
+std::string in_keywords(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const bool flag = text.substr(at).starts_with("--") && at + 2 < text.size() &&
+                      text[at + 2] >= 'a' && text[at + 2] <= 'z';
+    if (!flag) {
+      out += text[at++];
+      continue;
+    }
+    const std::size_t end =
+        std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at + 2), text.size());
+    out += keyword(std::string(text.substr(at + 2, end - at - 2)));
+    at = end;
+  }
+  return out;
+}
+
+Fault in_keywords(const Fault& fault) {
+  const bool name =
+      fault.what.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
+  return {name ? keyword(fault.what) : in_keywords(fault.what), in_keywords(fault.why),
+          in_keywords(fault.remedy)};
+}
+
+/// A value as the command line would have it; none where its type has no such form.
+std::optional<std::string> value_text(const py::handle& value, ValueKind kind) {
+  if (py::isinstance<py::bool_>(value)) {
+    const bool on = value.cast<bool>();
+    if (kind == ValueKind::flag) return on ? "true" : "false";
+    if (kind == ValueKind::on_off) return on ? "on" : "off";
+    return std::nullopt;
+  }
+  if (kind == ValueKind::flag) return std::nullopt;
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) {
+    std::string text;
+    for (const py::handle& each : value) {
+      const auto one = value_text(each, kind);
+      if (!one) return std::nullopt;
+      text += (text.empty() ? "" : kind == ValueKind::size ? "x" : ",") + *one;
+    }
+    return text;
+  }
+  if (py::hasattr(value, "__fspath__")) {
+    return py::module_::import("os").attr("fsdecode")(value).cast<std::string>();
+  }
+  const py::object number = py::module_::import("numbers").attr("Number");
+  if (!py::isinstance(value, number)) return std::nullopt;
+  // A NumPy float32 of .9 is .9, not what it is as a double.
+  return py::str(value).cast<std::string>();
+}
+
+}  // namespace
+
+Faults set_options(const OptionTable& options, const py::kwargs& given) {
+  Faults faults;
+  std::vector<std::string> names;
+  for (const Option& option : options.options()) names.push_back(option.name);
+  for (const auto& [key, value] : given) {
+    if (value.is_none()) continue;
+    const auto spelt = key.cast<std::string>();
+    std::string name = spelt;
+    std::ranges::replace(name, '_', '-');
+    const Option* option = options.find(name);
+    if (option == nullptr) {
+      const std::string meant = program::nearest(name, names);
+      faults.push_back(
+          {"'" + spelt + "'", "is no setting",
+           meant.empty() ? "see seqloop.settings()" : "did you mean '" + keyword(meant) + "'?"});
+      continue;
+    }
+    const auto text = value_text(value, option->kind);
+    if (!text) {
+      faults.push_back({name, py::repr(value).cast<std::string>() + " is not of its type",
+                        option->kind == ValueKind::flag ? "give True or False" : option->help});
+      continue;
+    }
+    for (Fault& fault : OptionTable::set(*option, *text)) faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
+py::dict described(const OptionTable& options) {
+  py::dict all;
+  for (const Option& option : options.options()) {
+    all[py::str(keyword(option.name))] = in_keywords(option.help);
+  }
+  return all;
+}
+
+void translate_faults(const py::object& error) {
+  static py::object* const type = new py::object(error);  // as long as the process lives
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const SetupError& setup) {
+      Faults faults;
+      py::list listed;
+      for (const Fault& fault : setup.faults()) {
+        const Fault said = in_keywords(fault);
+        listed.append(py::make_tuple(said.what, said.why, said.remedy));
+        faults.push_back(said);
+      }
+      py::object instance = (*type)(SetupError(std::move(faults)).what());
+      instance.attr("faults") = listed;
+      PyErr_SetObject(type->ptr(), instance.ptr());
+    }
+  });
+}
+
+bool is_plain(const Array& array) {
+  return py::isinstance<py::array_t<float>>(array) &&
+         (static_cast<unsigned>(array.flags()) & static_cast<unsigned>(py::array::c_style)) != 0;
+}
+
+std::span<const float> descriptor(const Array& array, std::size_t size) {
+  const bool fits = array.ndim() == 1 && static_cast<std::size_t>(array.size()) == size;
+  if (fits && is_plain(array)) {
+    return {static_cast<const float*>(array.data()), size};
+  }
+  const auto shape = py::str(array.attr("shape")).cast<std::string>();
+  if (!fits) {
+    throw SetupError({"descriptor", fmt::format("its shape is {}, the map's is ({},)", shape, size),
+                      "give one descriptor, of the describer that made the map"});
+  }
+  throw SetupError({"descriptor",
+                    fmt::format("it is {}{}", py::str(array.dtype()).cast<std::string>(),
+                                (static_cast<unsigned>(array.flags()) & py::array::c_style) != 0
+                                    ? ""
+                                    : ", and its values do not lie side by side"),
+                    "numpy.ascontiguousarray(descriptor, numpy.float32)"});
+}
+
+void look_for_interruption() {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+}  // namespace seqloop::python

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "program/options/options.hpp"
+#include "seqloop/fault.hpp"
+
+namespace seqloop::python {
+
+/// An array as Python gave it, of any type.
+using Array = pybind11::array;
+
+/// Sets options by keyword arguments: `full_map="thin"` for `--full-map thin`. True and False are
+/// on and off, a list is its values with commas between; None leaves an option as it is.
+/// @return everything that is wrong with them
+[[nodiscard]] Faults set_options(const program::OptionTable& options,
+                                 const pybind11::kwargs& given);
+
+/// Name and help of every option, as keyword arguments.
+[[nodiscard]] pybind11::dict described(const program::OptionTable& options);
+
+/// From now on SetupError arrives in Python as `error`, of which `faults` holds a tuple
+/// (what, why, remedy) for each fault, flags spelt as keyword arguments.
+void translate_faults(const pybind11::object& error);
+
+/// Whether an array is float32 and lies in C order, so that it needs no copy.
+[[nodiscard]] bool is_plain(const Array& array);
+
+/// A descriptor, where it lies. @param size D
+/// Throws SetupError: it is not float32 [D] in C order.
+[[nodiscard]] std::span<const float> descriptor(const Array& array, std::size_t size);
+
+/// An array that takes over what was computed.
+template <class Value>
+[[nodiscard]] pybind11::array_t<Value> as_array(const std::vector<Value>& values,
+                                                std::vector<pybind11::ssize_t> shape) {
+  return pybind11::array_t<Value>(std::move(shape), values.data());
+}
+
+/// Lets a long call end by Control-C: for code that runs without the interpreter's lock.
+void look_for_interruption();
+
+}  // namespace seqloop::python

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "python/recordings.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "evaluation/measures.hpp"
+#include "program/drives/match_drive.hpp"
+#include "program/drives/unit_rows.hpp"
+#include "program/options/matcher_settings.hpp"
+#include "program/options/truth_settings.hpp"
+#include "program/options/verb.hpp"
+
+namespace seqloop::python {
+namespace {
+
+namespace py = pybind11;
+
+using Unlocked = py::gil_scoped_release;
+
+/// The columns of the program's match list.
+py::dict columns_of(const program::MatchedDrive& matched) {
+  const std::size_t rows = matched.frames.size();
+  const auto shape = static_cast<py::ssize_t>(rows);
+  const auto column = [&](const auto& value_of) {
+    using Value = std::decay_t<decltype(value_of(matched.frames.front()))>;
+    py::array_t<Value> values(shape);
+    auto into = values.template mutable_unchecked<1>();
+    for (std::size_t i = 0; i < rows; ++i) {
+      into(static_cast<py::ssize_t>(i)) = value_of(matched.frames[i]);
+    }
+    return values;
+  };
+  using Frame = program::MatchedFrame;
+  const auto whole = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
+  using namespace py::literals;
+  return py::dict(
+      "query"_a = column([&](const Frame& frame) { return whole(frame.answer.frame); }),
+      "match"_a = column([&](const Frame& frame) { return whole(frame.answer.match->place); }),
+      "score"_a = column([](const Frame& frame) { return frame.answer.match->score; }),
+      "uniqueness"_a = column([](const Frame& frame) { return frame.answer.match->uniqueness; }),
+      "velocity"_a = column([](const Frame& frame) { return frame.answer.match->velocity; }),
+      "head"_a = column([&](const Frame& frame) { return whole(frame.answer.match->head); }),
+      "candidates"_a = column([&](const Frame& frame) { return whole(frame.candidates); }),
+      "k"_a = column([&](const Frame& frame) { return whole(frame.k); }),
+      "distances"_a = column([&](const Frame& frame) { return whole(frame.distances); }),
+      "probability"_a = column([](const Frame& frame) { return frame.answer.probability; }),
+      "accepted"_a = column([](const Frame& frame) { return frame.answer.gate == Gate::match; }));
+}
+
+py::dict match(const std::optional<Array>& reference, const Array& query,
+               const py::kwargs& settings) {
+  Faults faults;
+  const MatcherConfig config =
+      config_of(reference ? Use::localise : Use::close_loops, settings, faults);
+  std::optional<files::Matrix> places;
+  std::optional<files::Matrix> frames;
+  if (reference) {
+    program::collect(faults, [&] { places = matrix(*reference, "reference", config.difference); });
+  }
+  program::collect(faults, [&] { frames = matrix(query, "query", config.difference); });
+  if (frames && (!reference || places)) {
+    program::check_match(faults, config, places ? &*places : nullptr, *frames);
+  }
+  program::refuse(std::move(faults));
+  program::MatchedDrive matched;
+  {
+    const Unlocked unlocked;
+    matched =
+        program::match_drive(config, std::move(places), *frames, {nullptr, look_for_interruption});
+  }
+  return columns_of(matched);
+}
+
+/// @param truth [M, 2] query, reference or [M, 3] with a tolerance; none: as the settings say
+py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std::int64_t>& match,
+                  const py::array_t<double>& threshold, const py::array_t<double>& probability,
+                  const std::optional<py::array_t<bool>>& accepted, const std::string& threshold_on,
+                  const std::optional<py::array_t<std::int64_t>>& truth, std::uint64_t frames,
+                  const py::kwargs& given) {
+  Faults faults;
+  program::TruthSettings settings;
+  program::OptionTable options;
+  add_truth_options(options, settings);
+  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
+  evaluation::ThresholdOn on{};
+  try {
+    on = program::parse_threshold(threshold_on);
+  } catch (const std::invalid_argument& why) {
+    faults.push_back({"threshold_on", why.what()});
+  }
+  std::vector<evaluation::Answer> answers;
+  for (py::ssize_t i = 0; i < query.size(); ++i) {
+    evaluation::Answer& answer = answers.emplace_back(evaluation::Answer{
+        static_cast<std::uint64_t>(query.at(i)), static_cast<std::uint64_t>(match.at(i)),
+        evaluation::uncertainty(on, threshold.at(i)), probability.at(i)});
+    if (accepted) answer.accepted = accepted->at(i);
+  }
+  evaluation::Truth known;
+  if (truth) {
+    std::string table = truth->shape(1) == 3 ? "query,reference,tolerance\n" : "query,reference\n";
+    for (py::ssize_t row = 0; row < truth->shape(0); ++row) {
+      for (py::ssize_t column = 0; column < truth->shape(1); ++column) {
+        table += (column > 0 ? "," : "") + std::to_string(truth->at(row, column));
+      }
+      table += '\n';
+    }
+    settings.file = "truth";  // any name: it is by a list, not by identity
+    program::collect(faults, [&] {
+      known = evaluation::Truth::from_csv(evaluation::CsvTable(table, "truth"),
+                                          settings.unlisted.value_or(evaluation::Unlisted::wrong));
+    });
+  } else {
+    known = read_truth(settings, faults);
+  }
+  const program::JudgedBy judge = judge_by(settings, std::move(known), frames, answers, faults);
+  program::refuse(std::move(faults));
+  const evaluation::Measures measures =
+      measure(std::move(answers), judge.truth, settings.tolerance, judge.frames);
+  std::vector<double> curve;
+  for (const evaluation::CurvePoint& point : measures.curve) {
+    curve.push_back(point.recall);
+    curve.push_back(point.precision);
+  }
+  using namespace py::literals;
+  return py::dict(
+      "frames"_a = judge.frames, "answered"_a = measures.answered, "correct"_a = measures.correct,
+      "unknown"_a = measures.unknown, "precision"_a = measures.precision,
+      "recall"_a = measures.recall, "recall_at_100_precision"_a = measures.recall_at_100_precision,
+      "area_under_curve"_a = measures.area_under_curve, "accepted"_a = measures.accepted,
+      "accepted_precision"_a = measures.accepted_precision,
+      "accepted_recall"_a = measures.accepted_recall,
+      "expected_calibration_error"_a = expected_calibration_error(measures.reliability),
+      "curve"_a =
+          as_array(curve, {static_cast<py::ssize_t>(measures.curve.size()), py::ssize_t{2}}));
+}
+
+py::dict settings() {
+  program::MatcherSettings matcher;
+  program::OptionTable options;
+  add_matcher_options(options, matcher);
+  return described(options);
+}
+
+}  // namespace
+
+/// A copy of an array of descriptors, of unit length where Euclid compares, as the program reads
+/// it. @param name for messages
+files::Matrix matrix(const Array& array, const std::string& name, Difference difference) {
+  if (array.ndim() != 2 || array.size() == 0) {
+    throw SetupError({name, "its shape is " + py::str(array.attr("shape")).cast<std::string>(),
+                      "give [N, D]: a row for each frame"});
+  }
+  const char kind = array.dtype().kind();
+  if (kind != 'f') {
+    throw SetupError({name, "it is " + py::str(array.dtype()).cast<std::string>(),
+                      "give floating-point descriptors"});
+  }
+  const py::array_t<float, py::array::c_style | py::array::forcecast> plain(array);
+  files::Matrix copy{static_cast<std::size_t>(plain.shape(0)),
+                     static_cast<std::size_t>(plain.shape(1)),
+                     {plain.data(), plain.data() + plain.size()}};
+  check_finite(copy, name);
+  if (difference == Difference::euclidean) program::normalise_rows(copy);
+  return copy;
+}
+
+MatcherConfig config_of(Use use, const py::kwargs& settings, Faults& faults) {
+  program::MatcherSettings matcher;
+  program::OptionTable options;
+  program::add_matcher_options(options, matcher);
+  for (Fault& fault : set_options(options, settings)) faults.push_back(std::move(fault));
+  return resolve(matcher, use, faults);
+}
+
+void add_recordings(py::module_& module) {
+  module.def("match", &match, py::arg("reference").none(true), py::arg("query"));
+  module.def("evaluate", &evaluate, py::arg("query"), py::arg("match"), py::arg("threshold"),
+             py::arg("probability"), py::arg("accepted").none(true), py::arg("threshold_on"),
+             py::arg("pairs").none(true), py::arg("frames"));
+  module.def("settings", &settings);
+}
+
+}  // namespace seqloop::python

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <vector>
+
+#include "seqloop/frame_report.hpp"
+
+namespace seqloop::python {
+
+/// A FrameReport whose answers stay.
+struct Report {
+  FrameReport report;
+  std::vector<Answer> answers;
+};
+
+/// Report, Answer, Match, Belief, Work.
+void add_reports(pybind11::module_& module);
+
+}  // namespace seqloop::python

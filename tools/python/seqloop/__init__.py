@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""Visual loop closure in fixed memory and bounded time.
+
+Has this robot been here before? To match two drives that are there whole:
+
+    import seqloop
+    describer = seqloop.Describer()                        # built in; loads OpenCV
+    yesterday = describer.describe_drive("yesterday/")     # float32 [N, D]
+    today = describer.describe_drive("today.mp4")
+    matches = seqloop.match(yesterday, today)              # None, today: close loops within it
+    print(matches.query[matches.accepted], matches.match[matches.accepted])
+
+Frame by frame, as a robot does:
+
+    places = seqloop.PlaceMap(max_places=20_000, descriptor_size=describer.size, close_loops=True)
+    detector = seqloop.Detector(places)
+    for picture in camera:                                 # uint8 [H, W, 3], blue first
+        for answer in detector.step(describer.describe(picture)).answers:
+            if answer.gate == "match":
+                print(f"frame {answer.frame} is place {answer.match.place}")
+
+Settings are keyword arguments with the names of the program's flags: `seqloop.settings()` lists
+them. What goes wrong is a SetupError, a ValueError that tells every fault at once. Arguments of a
+wrong Python type, such as a string for an array, are TypeErrors.
+
+Frames and places are counted from 0. Differences and scores are 0 to 2, lower is better;
+probabilities 0 to 1.
+"""
+from __future__ import annotations
+
+import dataclasses
+import typing
+
+import numpy
+import numpy.typing
+
+from . import _core
+from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work
+from ._errors import SetupError
+from ._types import Gate, Setting
+
+if typing.TYPE_CHECKING:
+    from ._vision import Describer
+
+Floats = numpy.typing.NDArray[numpy.floating[typing.Any]]
+Integers = numpy.typing.NDArray[numpy.int64]
+
+__all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "Match", "Matches", "Measures", "PlaceMap",
+           "Report", "Setting", "SetupError", "Work", "differences", "evaluate", "match", "settings"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Matches:
+    """The answers to a drive, in the order of its frames: the columns of `seqloop match`, [M] each.
+
+    A frame about which nothing is known has no row.
+    """
+
+    query: Integers
+    """Frame of the query."""
+    match: Integers
+    """The place: a row of the reference or, closing loops, of the query itself."""
+    score: numpy.typing.NDArray[numpy.float32]
+    """Mean difference along the sequence, 0 to 2; lower is better. NaN: no line was found."""
+    uniqueness: numpy.typing.NDArray[numpy.float32]
+    """Score by the runner-up's; lower is better. NaN: not defined."""
+    velocity: numpy.typing.NDArray[numpy.float64]
+    """Rows a frame."""
+    head: Integers
+    """The place at the newest end of the sequence."""
+    candidates: Integers
+    """Rows that got a score in this frame's search."""
+    k: Integers
+    """Candidate ranges in force; 0 where all rows are candidates."""
+    distances: Integers
+    """Descriptor distances that the search cost."""
+    probability: numpy.typing.NDArray[numpy.float32]
+    """That the robot was at this place. NaN: the uniqueness decides."""
+    accepted: numpy.typing.NDArray[numpy.bool_]
+    """Whether it is a match, or only the best there is. Act on this."""
+
+    def __len__(self) -> int:
+        return len(self.query)
+
+
+@dataclasses.dataclass(frozen=True)
+class Measures:
+    """How good answers are: the keys of `seqloop eval --json`. Shares are 0 to 1, NaN where not defined."""
+
+    frames: int
+    """Queries that have a truth."""
+    answered: int
+    correct: int
+    unknown: int
+    """Answers that the truth cannot judge."""
+    precision: float
+    recall: float
+    recall_at_100_precision: float
+    area_under_curve: float
+    accepted: int | None
+    """Answers that were accepted; None where one does not say."""
+    accepted_precision: float
+    accepted_recall: float
+    expected_calibration_error: float
+    curve: numpy.typing.NDArray[numpy.float64]
+    """[P, 2]: recall, precision."""
+
+
+def match(reference: Floats | None, query: Floats, **settings: Setting) -> Matches:
+    """Matches a drive with an earlier one, or with itself, as `seqloop match` does.
+
+    reference: [N, D], a row a place; None closes loops within the query.
+    query: [M, D], a row a frame. Both are copied, as float32, and rows brought to unit length.
+    settings: see seqloop.settings().
+    Errors: SetupError.
+    """
+    return Matches(**_core.match(reference, query, **settings))
+
+
+def evaluate(matches: Matches, truth: str | Integers = "identity", *, threshold_on: str = "uniqueness",
+             frames: int | None = None, **settings: Setting) -> Measures:
+    """Compares answers with the truth, as `seqloop eval` does.
+
+    truth: "identity", "no-revisit", the name of a CSV file, or integers [T, 2]: query, reference.
+        Several rows of one query are several right answers; a third column is a row's own tolerance, in
+        frames. Of a matrix `seen` [references, queries] that is True where both show one place, it is
+        numpy.argwhere(seen.T).
+    threshold_on: what the curve sweeps: "uniqueness", "score" or "probability".
+    frames: queries that have a truth; None: as many as the truth says, or for identity as far as the
+        answers reach.
+    settings: tolerance=2 frames; reference_positions=, query_positions= (CSV files), radius=25 metres;
+        unlisted="wrong".
+    Errors: SetupError.
+    """
+    pairs: Integers | None = None
+    if not isinstance(truth, str):
+        pairs = numpy.asarray(truth)
+        if pairs.ndim != 2 or pairs.shape[1] not in (2, 3) or pairs.dtype.kind not in "iu" or (pairs < 0).any():
+            raise ValueError(f"truth: it is {pairs.dtype} of shape {pairs.shape}; give integers of 0 or more, "
+                             "[T, 2] or [T, 3]: query, reference, tolerance")
+    else:
+        settings["truth"] = truth
+    sweeps = getattr(matches, threshold_on) if threshold_on in ("score", "probability") else matches.uniqueness
+    return Measures(**_core.evaluate(
+        matches.query, matches.match, sweeps, matches.probability, matches.accepted, threshold_on, pairs,
+        frames or 0, **settings))
+
+
+def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.typing.NDArray[numpy.float32]:
+    """The difference matrix, [N, M]: how far each place (row) is from each frame (column), 0 to 2.
+
+    By the same arithmetic as the matcher's, with standardised features unless standardise=False. A frame
+    that could not be read repeats the column before it. For looking at it, and for code that wants a
+    similarity matrix (its negative): the matcher itself never keeps it whole.
+    Errors: SetupError.
+    """
+    settings["method"] = "single"
+    places = PlaceMap(len(reference), numpy.shape(reference)[-1], False, **settings)
+    places.add_drive(reference)
+    detector = Detector(places)
+    matrix = numpy.empty((len(reference), len(query)), numpy.float32)
+    frames = numpy.ascontiguousarray(query, numpy.float32)
+    if settings.get("difference") != "mean-absolute":
+        lengths = numpy.linalg.norm(frames, axis=1, keepdims=True)
+        frames = frames / numpy.maximum(lengths, numpy.float32(1e-30))
+    for frame, descriptor in enumerate(frames):
+        detector.step(descriptor)
+        matrix[:, frame] = detector.newest_column()
+    return matrix
+
+
+def settings() -> dict[str, str]:
+    """Every setting of the matcher, and what it does: of `PlaceMap`, `match` and `differences`.
+
+    They are those of the program: on and off are True and False. Those of `Describer` are listed by
+    `seqloop.Describer.settings()`.
+    """
+    return _core.settings()
+
+
+def __getattr__(name: str) -> typing.Any:
+    # Describers need OpenCV, which takes longer to load than all the rest: only when asked for.
+    if name == "Describer":
+        from ._vision import Describer
+        return Describer
+    raise AttributeError(f"module 'seqloop' has no attribute '{name}'")
