@@ -202,8 +202,8 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
 
 void Detector::report_due(FrameReport& report, bool readable) noexcept {
   const std::size_t before = pending_.answers().size();
-  if (readable) pending_.believe(belief_, *map_, report.newest);
-  pending_.answer(*map_, report.newest, window_began_);
+  if (readable) pending_.believe(belief_, *map_, report.newest, window_began_);
+  pending_.answer(belief_, *map_, report.newest, window_began_);
   const std::span<const Answer> answers = pending_.answers().subspan(before);
   const bool whole = report.newest >= window_began_ + config_.sequence_length;
   report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
@@ -216,7 +216,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   }
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
     report.now = Belief{static_cast<std::size_t>(map_->order().number(likeliest->row)),
-                        static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
+                        static_cast<float>(logistic(log_odds(*pending_.evidence()))),
                         static_cast<float>(belief_.new_place())};
   }
 }
@@ -250,7 +250,8 @@ void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
 std::span<const Answer> Detector::finish() noexcept {
   pending_.clear();
   const std::uint64_t end = queries_.frames();
-  if (end > 0 && config_.decision == Decision::probability) pending_.answer(*map_, end - 1, end);
+  if (end > 0 && config_.decision == Decision::probability)
+    pending_.answer(belief_, *map_, end - 1, end);
   restart();
   return pending_.answers();
 }

@@ -15,9 +15,9 @@ constexpr float undefined_float = std::numeric_limits<float>::quiet_NaN();
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
-// Chances of a frame: a trace begins, or ends.
-constexpr double begins = 0.003;
-constexpr double ends = 0.003;
+/// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
+/// the best of many are higher than those of one. Source: src/README.md, section 6.6.
+double trace_is_right(double best) { return logistic(1.5 * best - 1.0); }
 
 }  // namespace
 
@@ -27,19 +27,19 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
       patience_(config.patience),
       after_centre_(config.sequence_length - config.sequence_length / 2),
       grows_(config.use == Use::close_loops),
-      least_(static_cast<double>(config.min_probability)) {
+      least_(static_cast<double>(config.min_probability)),
+      span_(arena, PlaceBelief::depth(config)) {
   const bool used = config.decision == Decision::probability;
   const std::size_t kept = config.patience + config.sequence_length + 2;
   waiting_ = arena.take<Waiting>("frames that wait for their answer", used ? kept : 0);
   lines_ = arena.take<FoundLine>("lines found for them", used ? kept * lines_kept : 0);
   answers_ = arena.take<Answer>(
       "answers", used ? config.patience + config.frames_at_once + 1 : config.frames_at_once);
-  trace_ = arena.take<PlaceBelief::Step>("the likeliest trace", used ? config.patience + 1 : 0);
-  weights_ = arena.take<Ends>("where a trace may begin and end", used ? config.patience + 1 : 0);
+  trace_ = arena.take<BeliefTraces::Step>("the likeliest trace", PlaceBelief::depth(config));
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  at(frame) = {frame, true, readable, false, 0, 0, 0.0, 0.0, 0, 1.0, 0};
+  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, 0.0, 0};
   end_ = frame + 1;
 }
 
@@ -49,119 +49,114 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
   std::ranges::copy(lines, lines_of(frame).begin());
 }
 
-void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map,
-                             std::uint64_t newest) noexcept {
-  const PlaceOrder& order = map.order();
+/// That the robot was at the frame's row when it took it.
+double PendingAnswers::probability(const Waiting& waiting) noexcept {
+  return trace_is_right(waiting.odds) * (waiting.left ? waiting.on.left : waiting.on.still);
+}
+
+void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+                             std::uint64_t oldest) noexcept {
   evidence_.reset();
   const auto& likeliest = belief.likeliest();
   at(newest).new_place = belief.new_place();
   if (!likeliest) return;
-  const std::size_t length = belief.trace(likeliest->index, trace_);
   evidence_ = likeliest->evidence;
-  ask_windows(map, newest, length);
-  evidence_->past = belief.remember(log_odds_now(*evidence_));
-  const double odds = log_odds(*evidence_);
-  // Where the trace may have begun, and ended: by what its frames said. Chances of both, frame by
-  // frame; back from the newest.
-  if (length == 0) return;
-  // A trace that was sure of its oldest frame did not enter later.
-  const Waiting& oldest = at(newest - (length - 1));
-  const bool known = oldest.believed && oldest.frame == newest - (length - 1) && oldest.asked > 1 &&
-                     order.apart(oldest.row, trace_[length - 1].row) <= own;
-  const double off = known ? 1.0 - logistic(oldest.odds) * oldest.on : 1.0;
-  const double usual = exponential(-belief.usual_gain());
-  double said = 0.0;
-  double unusual = 1.0;
-  double entered = 0.0;  // at any frame
-  double gone = 0.0;
-  for (std::size_t back = 0; back < length; ++back) {
-    said += trace_[back].gain;
-    unusual *= usual;
-    const double likelier = exponential(said);
-    weights_[back] = {(back + 1 == length ? 1.0 : begins * off) * likelier * unusual,
-                      ends / likelier};
-    entered += weights_[back].entered;
-    gone += weights_[back].gone;
+  const auto trace = trace_.first(belief.trace(likeliest->index, trace_));
+  at(newest).novelty = trace.front().novelty;
+  ask_windows(map, newest, trace);
+  const double odds = belief.remember(log_odds(*evidence_));
+  for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
+    at(frame).left = true;
   }
-  double later = 0.0;  // entered after this frame
-  for (std::size_t back = 0; back < length; ++back) {
-    const std::uint64_t frame = newest - back;
-    Waiting& waiting = at(frame);
-    // Entered at this frame or before it, and not gone by then.
-    const double on = std::max(0.0, entered - later) / entered / (1.0 + gone);
-    later += weights_[back].entered;
-    gone = std::max(0.0, gone - weights_[back].gone);
-    if (!waiting.waits || waiting.frame != frame) continue;
-    const bool same = waiting.believed && order.apart(waiting.row, trace_[back].row) <= own;
-    if (!same && waiting.believed) {
-      // One of the two is wrong.
-      const double now = logistic(odds) * on;
-      if (logistic(waiting.odds) * waiting.on > now) {
-        waiting.on = std::min(waiting.on, 1.0 - now);
-        continue;
-      }
+  const std::uint64_t first = newest - (trace.size() - 1);
+  const Waiting& before = at(first);
+  const bool known = before.frame == first && before.believed && before.lag > 0 &&
+                     map.order().apart(before.row, trace.back().row) <= own;
+  // A frame that stands still tells half as much as one that does not.
+  constexpr double half = 0.5;
+  const std::span<const TraceSpan::On> on =
+      span_.find(trace, known ? trace_is_right(before.odds) * before.on.still : 0.0,
+                 belief.usual_gain(), half * belief.usual_novelty());
+  for (std::size_t back = 0; back < trace.size(); ++back) {
+    Waiting& waiting = at(newest - back);
+    if (waiting.waits && waiting.frame == newest - back) {
+      look_back(map.order(), waiting, trace[back].row, odds, on[back], back);
     }
-    if (!same) waiting.asked = 0;
-    ++waiting.asked;
-    waiting.odds =
-        same ? waiting.odds + (odds - waiting.odds) / static_cast<double>(waiting.asked) : odds;
-    waiting.lag = back;
-    waiting.on = on;
-    waiting.row = trace_[back].row;
-    waiting.believed = true;
   }
+}
+
+/// Takes in that a trace has come through a frame.
+void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row,
+                               double odds, const TraceSpan::On& on, std::uint64_t lag) noexcept {
+  const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
+  if (waiting.believed && !same) {
+    // One of the two is wrong.
+    const double now = trace_is_right(odds) * on.still;
+    if (probability(waiting) > now) {
+      waiting.on = {std::min(waiting.on.still, 1.0 - now), std::min(waiting.on.left, 1.0 - now)};
+      return;
+    }
+  }
+  waiting.odds = same ? std::max(waiting.odds, odds) : odds;
+  waiting.on = on;
+  waiting.lag = lag;
+  waiting.row = row;
+  waiting.left = false;
+  waiting.believed = true;
+}
+
+/// How much better the best line through a frame's row is than the best one elsewhere.
+double PendingAnswers::margin(const PlaceMap& map, std::uint64_t frame, std::size_t row) noexcept {
+  double here = 0.0;
+  double elsewhere = 0.0;
+  for (const FoundLine& line : lines_of(frame).first(at(frame).lines)) {
+    const bool same = line.row < map.size() && map.same_place(line.row, row);
+    double& lowest = same ? here : elsewhere;
+    if (lowest == 0.0) lowest = line.score;
+  }
+  constexpr double most = 0.2;
+  if (here == 0.0) return -most;
+  return elsewhere == 0.0 ? most : std::clamp(logarithm(elsewhere / here), -most, most);
 }
 
 /// What sequence search says of the frames along the trace.
 void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
-                                 std::size_t length) noexcept {
+                                 std::span<BeliefTraces::Step> trace) noexcept {
   constexpr std::size_t windows = 10;
   std::size_t asked = 0;
-  for (std::size_t back = after_centre_; back < length && asked < windows; ++back) {
+  for (std::size_t back = after_centre_; back < trace.size(); ++back) {
     const std::uint64_t frame = newest - back;
     if (at(frame).frame != frame || at(frame).lines == 0) continue;
-    ++asked;
-    double here = 0.0;
-    double elsewhere = 0.0;
-    for (const FoundLine& line : lines_of(frame).first(at(frame).lines)) {
-      const bool same = line.row < map.size() && map.same_place(line.row, trace_[back].row);
-      double& lowest = same ? here : elsewhere;
-      if (lowest == 0.0) lowest = line.score;
-    }
-    constexpr double most = 0.2;
-    double margin = here == 0.0 ? -most : most;
-    if (here > 0.0 && elsewhere > 0.0) {
-      margin = std::clamp(logarithm(elsewhere / here), -most, most);
-    }
-    evidence_->margin += margin / static_cast<double>(windows);
+    const double better = margin(map, frame, trace[back].row);
+    if (asked++ < windows) evidence_->margin += better / static_cast<double>(windows);
+    constexpr double weight = 16.0;
+    constexpr double usual = 0.04;
+    trace[back].gain += weight * trace[back].novelty * (better - usual);
   }
 }
 
-void PendingAnswers::answer(PlaceMap& map, std::uint64_t newest, std::uint64_t oldest) noexcept {
+void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
+                            std::uint64_t oldest) noexcept {
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
-    const bool sure = waiting.believed && waiting.lag >= after_centre_ + after_centre_ / 2 &&
-                      logistic(waiting.odds) * waiting.on >= least_;
-    if (late || sure || !waiting.readable) give(map, newest, waiting);
+    const bool sure =
+        waiting.believed && waiting.lag >= 2 * after_centre_ && probability(waiting) >= least_;
+    if (late || sure || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
 }
 
-void PendingAnswers::give(PlaceMap& map, std::uint64_t newest, Waiting& waiting) noexcept {
+void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept {
   waiting.waits = false;
   Answer& answer = answers_[given_++];
   answer = {waiting.frame, Gate::frame_error, 0.0F, std::nullopt};
   if (!waiting.readable) return;
   answer.gate = Gate::new_place;
   if (!waiting.believed) return;
-  // What was last said of the frame was said too early to know whether the trace was left by then.
-  constexpr double early = 0.9;
-  const bool left = waiting.lag < std::min<std::uint64_t>(after_centre_, newest - waiting.frame);
-  answer.probability =
-      static_cast<float>(logistic(waiting.odds) * waiting.on * (left ? early : 1.0));
-  answer.match = match(map, waiting.frame);
+  answer.probability = static_cast<float>(probability(waiting));
+  answer.match = match(belief, map, waiting.frame);
   const bool sure = static_cast<double>(answer.probability) >= least_;
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
@@ -187,7 +182,36 @@ std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,
   return std::nullopt;
 }
 
-Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
+/// Whether the trace goes through the whole window of a frame.
+bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept {
+  const std::uint64_t before = trajectories_->centre();
+  if (frame < before) return false;
+  constexpr double half = 0.5;
+  const Waiting& first = at(frame - before);
+  const Waiting& last = at(frame + after_centre_);
+  // From 0 to 2 rows a frame, as the belief moves.
+  return first.frame == frame - before && last.frame == frame + after_centre_ && first.believed &&
+         last.believed && std::min(probability(first), probability(last)) > half &&
+         first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
+}
+
+/// Whether little was new in the window of a frame, for this drive.
+bool PendingAnswers::hardly_changes(const PlaceBelief& belief, std::uint64_t frame) noexcept {
+  const std::uint64_t first = frame - std::min<std::uint64_t>(frame, trajectories_->centre());
+  const std::uint64_t last = std::min(frame + after_centre_ + 1, end_);
+  double sum = 0.0;
+  double frames = 0.0;
+  for (std::uint64_t other = first; other < last; ++other) {
+    if (at(other).frame != other) continue;
+    sum += at(other).novelty;
+    frames += 1.0;
+  }
+  constexpr double little = 0.3;
+  return sum < little * belief.usual_novelty() * frames;
+}
+
+Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
+                            std::uint64_t frame) noexcept {
   const PlaceOrder& order = map.order();
   // A row that is `by` rows from another, or as far that way as its session goes.
   const auto number = [&](std::size_t row, std::int64_t by) {
@@ -197,21 +221,26 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
                    static_cast<std::int64_t>(session.last) - 1);
     return static_cast<std::size_t>(order.number(static_cast<std::size_t>(there)));
   };
-  // The line through the frame itself, or the nearest one that reaches it.
-  for (std::uint64_t off = 0; off <= trajectories_->window() / 2; ++off) {
-    for (const bool after : {true, false}) {
-      if (!after && (off == 0 || frame < off)) continue;
-      const std::uint64_t other = after ? frame + off : frame - off;
-      if (other >= end_ || (after && off > trajectories_->centre())) continue;
-      const auto line = line_near(map, other);
-      if (!line) continue;
-      const auto offsets = trajectories_->offsets(line->line);
-      // From there on as the trace goes.
-      const std::int64_t on =
-          static_cast<std::int64_t>(at(frame).row) - static_cast<std::int64_t>(at(other).row);
-      return {number(line->row, on), static_cast<float>(line->score),
-              static_cast<float>(line->uniqueness), trajectories_->velocity(line->line),
-              number(line->row, offsets.back())};
+  // The line through the frame itself, or the nearest one that reaches it; one whose window lies on
+  // the trace from end to end, if there is any. Otherwise, and where hardly anything changes, rows
+  // side by side have lines that are as good as each other: the trace knows the row better.
+  const bool stands = hardly_changes(belief, frame);
+  for (const bool whole : {true, false}) {
+    for (std::uint64_t off = 0; off <= trajectories_->window() / 2; ++off) {
+      for (const bool after : {true, false}) {
+        if (!after && (off == 0 || frame < off)) continue;
+        const std::uint64_t other = after ? frame + off : frame - off;
+        if (other >= end_ || (after && off > trajectories_->centre())) continue;
+        const auto line = line_near(map, other);
+        if (!line || (whole && !lies_on_trace(order, other))) continue;
+        const auto offsets = trajectories_->offsets(line->line);
+        const bool by_line = whole && !stands;
+        const std::size_t from = by_line ? line->row : at(frame).row;
+        const std::int64_t there = by_line ? offsets[trajectories_->centre() + frame - other] : 0;
+        return {number(from, there), static_cast<float>(line->score),
+                static_cast<float>(line->uniqueness), trajectories_->velocity(line->line),
+                number(from, offsets.back())};
+      }
     }
   }
   const std::size_t row = at(frame).row;

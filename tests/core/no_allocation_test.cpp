@@ -66,6 +66,20 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
   }
 }
 
+TEST_F(NoAllocation, InTheLastAnswersOfADrive) {
+  const MatcherConfig config;
+  const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
+  PlaceMap map = map_of(lap, config);
+  Detector detector(config, map);
+  std::size_t answered = 0;
+  for (const auto& descriptor : lap) answered += detector.step(descriptor).answers.size();
+  const AllocationGuard guard;
+  answered += detector.finish().size();
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_EQ(answered, lap.size());
+  EXPECT_TRUE(detector.finish().empty());
+}
+
 TEST_F(NoAllocation, WhenAFullMapMakesRoom) {
   const oracle::Vectors lap = oracle::drive(32, 150, 40, 0.2F);
   for (const Arithmetic arithmetic : {Arithmetic::float32, Arithmetic::int8, Arithmetic::sketch}) {

@@ -82,7 +82,8 @@ TEST_F(Accuracy, OfAcceptedMatchesHardlyOneIsAnotherByWholeNumbersThanByFloats) 
     }
     for (const std::string ds : {"20", "40", "80"}) {
       const std::string match =
-          "match --reference r.npy --query q.npy --method seqcnnslam --ds " + ds;
+          "match --reference r.npy --query q.npy --method seqcnnslam --decide-by uniqueness --ds " +
+          ds;
       ASSERT_EQ(run(match + " --arithmetic int8 --out whole.csv").exit_code, 0);
       ASSERT_EQ(run(match + " --arithmetic float --out float.csv").exit_code, 0);
       const auto whole = evaluation::CsvTable::read(file("whole.csv"));

@@ -106,12 +106,13 @@ TEST_F(BadInput, Numbers) {
 
 TEST_F(BadInput, WhatDecides) {
   const std::string drives = "--reference good.npy --query good.npy ";
-  for (const std::string wrong : {"0", "-1", "2"}) {
+  for (const std::string wrong : {"0", "-1", "1.5", "2", "1e-60"}) {
     expect_match_refused(drives + "--min-probability " + wrong,
                          {"min-probability", "above 0 and at most 1"});
   }
   expect_match_refused(drives + "--min-probability nan", {"min-probability", "'nan'"});
   expect_match_refused(drives + "--patience 1001", {"patience: 1001", "1000"});
+  expect_match_refused(drives + "--patience -1", {"patience", "'-1'"});
   expect_refused("match --out m.csv " + drives + "--max-uniqueness 0.9",
                  {"max-uniqueness", "probability", "--decide-by uniqueness"});
   expect_match_refused(drives + "--decide-by luck", {"decide-by", "'luck'"});

@@ -8,6 +8,7 @@
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/place_belief.hpp"
+#include "seqloop/detail/trace_span.hpp"
 #include "seqloop/detail/trajectories.hpp"
 #include "seqloop/frame_report.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -43,8 +44,11 @@ class PendingAnswers {
   void found(std::uint64_t frame, std::span<const FoundLine> lines) noexcept;
 
   /// Takes in what is believed at the newest frame.
-  /// Work: a pass over the frames that wait. Allocates: never.
-  void believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest) noexcept;
+  /// @param oldest frame that belongs together with it
+  /// Work: a pass over the frames that wait, and as many exponentials as patience has frames.
+  /// Allocates: never.
+  void believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+               std::uint64_t oldest) noexcept;
 
   /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
@@ -52,7 +56,8 @@ class PendingAnswers {
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
   /// @param oldest frame that belongs together with the newest: those before it wait no longer
-  void answer(PlaceMap& map, std::uint64_t newest, std::uint64_t oldest) noexcept;
+  void answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
+              std::uint64_t oldest) noexcept;
 
   /// Takes an answer that did not wait.
   void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
@@ -71,19 +76,14 @@ class PendingAnswers {
     bool waits;
     bool readable;
     bool believed;      // whether it lies on a trace
+    bool left;          // by the trace of the newest frame that was looked back from
     std::size_t row;    // there
-    std::size_t asked;  // how often it was looked at there,
-    double odds;        // mean log-odds that the trace is right
-    double on;          // probability that the frame lies on it, given that
-    std::uint64_t lag;  // frames that had come after it when it was looked at last
+    double odds;        // best log-odds of the trace
+    TraceSpan::On on;   // that the frame lies on it
+    std::uint64_t lag;  // frames that had come after it when it was looked back on last
     double new_place;   // belief in none, as it came
+    double novelty;     // of the frame
     std::size_t lines;  // found
-  };
-
-  /// How likely a trace begins at a frame, or has ended before it, beside other frames.
-  struct Ends {
-    double entered;
-    double gone;
   };
 
   [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept {
@@ -93,11 +93,19 @@ class PendingAnswers {
     return lines_.subspan(static_cast<std::size_t>(frame % waiting_.size()) * lines_kept,
                           lines_kept);
   }
-  void ask_windows(const PlaceMap& map, std::uint64_t newest, std::size_t length) noexcept;
+  [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
+  [[nodiscard]] double margin(const PlaceMap& map, std::uint64_t frame, std::size_t row) noexcept;
+  void ask_windows(const PlaceMap& map, std::uint64_t newest,
+                   std::span<BeliefTraces::Step> trace) noexcept;
+  void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double odds,
+                 const TraceSpan::On& on, std::uint64_t lag) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
-  [[nodiscard]] Match match(const PlaceMap& map, std::uint64_t frame) noexcept;
-  void give(PlaceMap& map, std::uint64_t newest, Waiting& waiting) noexcept;
+  [[nodiscard]] bool hardly_changes(const PlaceBelief& belief, std::uint64_t frame) noexcept;
+  [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
+  [[nodiscard]] Match match(const PlaceBelief& belief, const PlaceMap& map,
+                            std::uint64_t frame) noexcept;
+  void give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept;
 
   const Trajectories* trajectories_;
   std::size_t patience_;
@@ -108,11 +116,11 @@ class PendingAnswers {
   std::uint64_t end_ = 0;    // after the newest
   std::size_t given_ = 0;
   std::optional<Evidence> evidence_;
-  std::span<Waiting> waiting_;          // [patience + ds + 2], a ring by frame
-  std::span<FoundLine> lines_;          // [the same, lines_kept]
-  std::span<Answer> answers_;           // [patience + frames at once + 1]
-  std::span<PlaceBelief::Step> trace_;  // [patience + 1]
-  std::span<Ends> weights_;             // [patience + 1]
+  std::span<Waiting> waiting_;           // [patience + ds + 2], a ring by frame
+  std::span<FoundLine> lines_;           // [the same, lines_kept]
+  std::span<Answer> answers_;            // [patience + frames at once + 1]
+  std::span<BeliefTraces::Step> trace_;  // [PlaceBelief::depth]
+  TraceSpan span_;
 };
 
 }  // namespace seqloop

@@ -69,12 +69,9 @@ FullMap parse_full_map(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is none of refuse, forget-oldest, thin");
 }
 
-/// Whether the probability was measured for such a configuration: descriptors compared by Euclid,
-/// candidates from a scan, windows that fit into the patience.
+/// Whether the probability was measured for such differences: SeqSLAM's patches are others.
 bool calibrated(const MatcherConfig& config) {
-  constexpr std::size_t longest = 20;
-  return config.difference == Difference::euclidean && !config.enhance && relocalises(config) &&
-         config.sequence_length <= longest;
+  return config.difference == Difference::euclidean && !config.enhance;
 }
 
 /// What accepts a match. A threshold of the other kind would do nothing, and is a fault.
@@ -174,14 +171,14 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                  settings.min_probability = static_cast<float>(parse_number(value));
                }});
   options.add({"patience", ValueKind::count,
-               "a frame is answered this many frames later at the latest, 0 to 1000 [30]",
+               "a frame is answered this many frames later at the latest, 0 to 1000 [60]",
                [&settings](std::string_view value) { settings.patience = parse_count(value); }});
   options.section("Decision", Shown::in_help_all);
-  options.add(
-      {"decide-by", ValueKind::text,
-       "what accepts a match: probability or uniqueness [probability for a- and o-seqcnnslam up to "
-       "--ds 20, otherwise uniqueness]",
-       [&settings](std::string_view value) { settings.decision = parse_decision(value); }});
+  options.add({"decide-by", ValueKind::text,
+               "what accepts a match: probability or uniqueness [probability; uniqueness under "
+               "--paper and for "
+               "seqslam]",
+               [&settings](std::string_view value) { settings.decision = parse_decision(value); }});
   options.add({"max-uniqueness", ValueKind::number,
                "by uniqueness: a match is accepted up to this, above 0 to 1 [0.94]",
                [&settings](std::string_view value) {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace seqloop {
+
+/// What the newest frame's likeliest row is judged by: the inputs of its probability.
+struct Evidence {
+  double odds = 0.0;      ///< ln of the belief in the row's place by that in all else
+  double lead = 0.0;      ///< how far it has done better than the best wrong rows usually do
+  double contrast = 0.0;  ///< how much better it looks than the rows and frames around it
+  double age = 0.0;       ///< ln (1 + novel frames that have followed it)
+  double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
+};
+
+/// The log-odds that the robot is at the newest frame's likeliest row, by such evidence: a logistic
+/// regression. Source: src/README.md, section 6.4.
+[[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
+  return -4.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
+         8.984 * e.margin;
+}
+
+}  // namespace seqloop

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/belief_traces.hpp"
+
+namespace seqloop {
+
+/// From which frame of a trace on the robot was on it, and until which: it may have come onto the
+/// map later than the trace says, or have left it already. A smoother, forward and backward, over
+/// three states. Source: src/README.md, section 6.6.
+class TraceSpan {
+ public:
+  /// @param most frames of a trace. Allocates: from the arena only.
+  TraceSpan(Arena& arena, std::size_t most);
+
+  /// Probabilities that a frame lies on the trace, if the trace is right.
+  struct On {
+    double still;  ///< if the trace goes on
+    double left;   ///< if it was left, since the newest frame at the latest
+  };
+
+  /// @param trace  the newest frame first; at most `most`
+  /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
+  /// @param usual  what wrong rows gain, by novelty; 0 or more
+  /// @param least  novelty that a frame has for this at least
+  /// @return frame by frame as the trace; until the next call
+  /// Work: as many exponentials as there are frames. Allocates: never.
+  std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
+                           double least) noexcept;
+
+ private:
+  /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.
+  struct Forward {
+    double fresh;
+    double on;
+    double gone;
+    double likelier;  // the frame, on the trace than elsewhere
+  };
+
+  std::span<Forward> forward_;  // [most]
+  std::span<On> on_;            // [most]
+};
+
+}  // namespace seqloop

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/detail/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "seqloop/detail/portable_math.hpp"
+#include "seqloop/detail/sketch.hpp"
+
+namespace seqloop {
+namespace {
+
+// Fewer rows than that tell nothing of how unlike places usually are.
+constexpr std::size_t least_rows = 20;
+
+constexpr double scanned_bits = DescriptorRows::scanned_words * 64.0;
+constexpr double close_bits = DescriptorRows::close_words * 64.0;
+
+/// How much the newest frame tells that those before it did not.
+/// @param mean share of bits in which rows differ from it
+double novelty_of(const SceneView& view, double mean, std::size_t& sketches) {
+  const std::uint64_t frames = view.newest - view.oldest;
+  if (frames == 0) return 0.0;
+  const DescriptorRows& queries = view.queries->rows();
+  const auto squared = [&](std::size_t back) {
+    ++sketches;
+    const double d = chord(queries.look_closely(queries, view.queries->row_of(view.newest),
+                                                view.queries->row_of(view.newest - back)) /
+                           close_bits);
+    return d * d;
+  };
+  const double before = squared(1);
+  const double cosine = std::max(0.0, 1.0 - before / 2.0);
+  constexpr double noise = 0.03;
+  constexpr double power = 0.7;
+  constexpr double highest = 0.5;
+  const double change = std::min(highest, std::max(0.0, 1.0 - cosine - noise) / (1.0 + cosine));
+  if (change <= 0.0) return 0.0;
+  // A camera that shakes, or noise, changes much from frame to frame and goes nowhere.
+  const double mu = chord(mean) * chord(mean);
+  double gone = 1.0;
+  if (before <= 0.9 * mu) {
+    const double earlier =
+        squared(static_cast<std::size_t>(std::min<std::uint64_t>(SceneGauge::reach, frames)));
+    gone = std::clamp((earlier - before) / (0.5 * (mu - before)), 0.0, 1.0);
+  }
+  return exponential(power * logarithm(change)) * gone;
+}
+
+}  // namespace
+
+SceneGauge::SceneGauge(Arena& arena, bool used)
+    : histogram_(arena.take<std::uint32_t>(
+          "histogram of a scan", used ? static_cast<std::size_t>(scanned_bits) + 1 : 0)) {}
+
+std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketches) noexcept {
+  const std::span<const std::uint32_t> bits = view.seen->scanned().bits;
+  if (view.rows < least_rows || bits.size() < std::min(least_rows, view.rows)) return std::nullopt;
+  std::ranges::fill(histogram_, 0U);
+  for (const std::uint32_t b : bits) ++histogram_[b];
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t b = 0; b < histogram_.size(); ++b) {
+    const double x = static_cast<double>(b) * static_cast<double>(histogram_[b]);
+    sum += x;
+    squares += x * static_cast<double>(b);
+  }
+  const auto n = static_cast<double>(bits.size());
+  const double mean = sum / n / scanned_bits;
+  const double variance = squares / n / (scanned_bits * scanned_bits) - mean * mean;
+  // Few bits make the shares noisier than more of them will be.
+  const double chance = mean * (1.0 - mean);
+  constexpr double least_deviation = 0.012;
+  const double spread =
+      std::max(variance - chance / scanned_bits, least_deviation * least_deviation);
+  const double scanned = std::sqrt(spread + chance / scanned_bits);
+  // The mean of e^z, which from one count of bits to the next falls by the same share.
+  const auto likest = static_cast<std::size_t>(std::distance(
+      histogram_.begin(), std::ranges::find_if(histogram_, [](std::uint32_t c) { return c > 0; })));
+  const double falls = exponential(-1.0 / (scanned_bits * scanned));
+  double power = exponential((mean - static_cast<double>(likest) / scanned_bits) / scanned);
+  constexpr double highest = 160'000.0;  // about e^12: a few rows alike are no sign of the rest
+  double exponentials = 0.0;
+  for (std::size_t b = likest; b < histogram_.size(); ++b) {
+    exponentials += static_cast<double>(histogram_[b]) * std::min(power, highest);
+    power *= falls;
+  }
+  constexpr double above = 0.55;
+  return Scene{mean, std::sqrt(spread + chance / close_bits), logarithm(exponentials / n) + above,
+               novelty_of(view, mean, sketches)};
+}
+
+}  // namespace seqloop

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+// The belief against the same filter written down anew from src/README.md, sections 6.1 to 6.4,
+// without thought of speed: rows in a tree, the C library's functions, no rows kept sorted.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/matcher.hpp"
+#include "core/ways.hpp"
+#include "seqloop/detail/place_belief.hpp"
+#include "seqloop/detail/sketch.hpp"
+#include "seqloop/detail/trace_span.hpp"
+
+namespace seqloop {
+namespace {
+
+constexpr std::size_t size = 128;
+
+/// What a detector gives its belief to see.
+struct Seen {
+  MatcherConfig config;
+  TestArena memory;
+  PlaceMap map;
+  QueryHistory queries;
+  CandidateProposals proposals;
+
+  Seen(const oracle::Vectors& places, const MatcherConfig& with)
+      : config(with),
+        map(map_of(places, with)),
+        queries(memory.arena, DescriptorForm(with, size), 32),
+        proposals(memory.arena, with, places.size()) {}
+
+  SceneView take(const std::vector<float>& descriptor) {
+    queries.push(descriptor);
+    proposals.look(queries, map, map.size(), queries.newest(), 0);
+    return {&queries, &map, &proposals, queries.newest(), 0, map.size()};
+  }
+};
+
+/// Section 6, step by step.
+class NaiveBelief {
+ public:
+  struct Row {
+    double mass = 0.0, gain = 0.0, clear = 0.0, age = 0.0;
+  };
+
+  void observe(const SceneView& view) {
+    const auto share = [&](std::size_t frame, std::size_t row) {
+      return view.map->rows().look_closely(view.queries->rows(), view.queries->row_of(frame),
+                                           view.map->order().slot(row)) /
+             1024.0;
+    };
+    const auto of_frames = [&](std::size_t a, std::size_t b) {
+      const DescriptorRows& rows = view.queries->rows();
+      return rows.look_closely(rows, view.queries->row_of(a), view.queries->row_of(b)) / 1024.0;
+    };
+    const std::size_t t = view.newest;
+    // 6.1
+    std::vector<double> shares;
+    for (const std::uint32_t bits : view.seen->scanned().bits) shares.push_back(bits / 256.0);
+    const auto n = static_cast<double>(shares.size());
+    double mu = 0.0;
+    for (const double s : shares) mu += s / n;
+    double s2 = 0.0;
+    for (const double s : shares) s2 += (s - mu) * (s - mu) / n;
+    const auto noise = [&](double bits) { return mu * (1.0 - mu) / bits; };
+    const double spread = std::max(s2 - noise(256), 0.012 * 0.012);
+    const double sigma = std::sqrt(spread + noise(1024));
+    double mean = 0.0;
+    for (const double s : shares) {
+      mean += std::min(std::exp((mu - s) / std::sqrt(spread + noise(256))), 160'000.0) / n;
+    }
+    const double bias = std::log(mean) + 0.55;
+    // 6.2
+    double w = 0.0;
+    if (t > 0) {
+      const auto d2 = [&](std::size_t k) { return std::pow(chord(of_frames(t - k, t)), 2); };
+      const double c = std::max(0.0, 1.0 - d2(1) / 2.0);
+      const double far = std::pow(chord(mu), 2);
+      double gone = 1.0;
+      if (d2(1) <= 0.9 * far) {
+        gone = std::clamp((d2(std::min<std::size_t>(20, t)) - d2(1)) / (0.5 * (far - d2(1))), 0.0,
+                          1.0);
+      }
+      w = std::pow(std::min(0.5, std::max(0.0, 1.0 - c - 0.03) / (1.0 + c)), 0.7) * gone;
+    }
+    // 6.3, move
+    const std::vector<double> by =
+        w > 0.02 ? std::vector{0.06, 0.88, 0.06} : std::vector{0.45, 0.40, 0.15};
+    std::map<std::size_t, Row> moved;
+    std::map<std::size_t, double> largest;
+    for (const auto& [row, old] : rows_) {
+      for (std::size_t i = 0; i < by.size(); ++i) {
+        const double part = by[i] * old.mass;
+        Row& here = moved[row + i];
+        const double mass = here.mass + part;
+        // Of equals the one that moved least.
+        if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
+          largest[row + i] = part;
+          here = old;
+        }
+        here.mass = mass;
+      }
+    }
+    std::vector<std::pair<double, std::size_t>> order;
+    for (const auto& [row, at] : moved) order.emplace_back(-at.mass, row);
+    std::ranges::sort(order);
+    for (std::size_t i = 48; i < order.size(); ++i) moved.erase(order[i].second);
+    // Leave and come.
+    double on = 0.0;
+    for (auto& [row, at] : moved) {
+      on += at.mass;
+      at.mass *= 1.0 - 0.01 * w;
+    }
+    const double born = 0.001 * std::min(1.0, 4.0 * w) * new_place;
+    new_place += 0.01 * w * on - born;
+    std::erase_if(moved, [&](const auto& at) { return at.first >= view.map->size(); });
+    for (const auto& found : view.seen->found()) {
+      if (born <= 0.0) break;
+      Row& at = moved[found.row];
+      const double old = at.mass / (at.mass + born / n);
+      at = {at.mass + born / n, at.gain * old, at.clear * old, at.age * old};
+    }
+    // Weigh.
+    std::map<std::size_t, double> gains;
+    for (auto& [row, at] : moved) {
+      const double here = share(t, row);
+      double contrast = 0.0;
+      if (t >= 8) {
+        double around = 2.0 * share(t - 8, row);
+        double weight = 2.0;
+        for (const std::size_t other : {row - 8, row + 8}) {
+          if (other >= view.map->size()) continue;
+          around += share(t, other);
+          weight += 1.0;
+        }
+        contrast = (around / weight - here) / sigma;
+      }
+      const double l = std::clamp((mu - here) / sigma + 0.7 * contrast - bias, -1.5, 3.0);
+      gains[row] = l;
+      at.mass *= std::exp(w * l);
+      at.gain = 0.95 * at.gain + w * l;
+      at.clear = 0.95 * at.clear + 0.05 * contrast;
+      at.age += w;
+    }
+    // Sharpen.
+    const auto sharp = [&](std::size_t row) {
+      return moved[row].mass * std::exp(0.2 * (1.0 - w) * gains[row]);
+    };
+    rows_ = moved;
+    double sum = new_place;
+    for (auto& [row, at] : rows_) {
+      double before = 0.0;
+      double after = 0.0;
+      for (const auto& [other, there] : moved) {
+        if (other + 5 < row || other > row + 5) continue;
+        before += there.mass;
+        after += sharp(other);
+      }
+      at.mass = sharp(row) * before / after;
+      sum += at.mass;
+    }
+    for (auto& [row, at] : rows_) at.mass /= sum;
+    new_place /= sum;
+    judge(w);
+  }
+
+  double new_place = 1.0;
+  std::size_t likeliest = 0;
+  Evidence evidence;
+
+ private:
+  /// 6.4
+  void judge(double w) {
+    if (rows_.empty()) return;
+    const auto best =
+        std::ranges::max_element(rows_, {}, [](const auto& at) { return at.second.mass; });
+    likeliest = best->first;
+    double big = 0.0;
+    double rival = -2.0;
+    for (const auto& [other, at] : rows_) {
+      if (other + 10 >= likeliest && other <= likeliest + 10) {
+        big += at.mass;
+      } else {
+        rival = std::max(rival, at.gain);
+      }
+    }
+    if (new_place > 0.5) rival = std::max(rival, best->second.gain);
+    if (w > 0.02) {
+      if (weight_ == 0.0) mean_ = rival;
+      const double a = 1.0 / std::min(weight_ + 1.0, 300.0);
+      weight_ += 2.0 * w;
+      const double off = rival - mean_;
+      mean_ += a * off;
+      variance_ = (1.0 - a) * (variance_ + a * off * off);
+    }
+    big = std::clamp(big, 1e-12, 1.0 - 1e-12);
+    evidence = {std::log(big / (1.0 - big)),
+                (best->second.gain - mean_) / std::sqrt(variance_ + 0.25), best->second.clear,
+                std::log(1.0 + best->second.age), 0.0};
+  }
+
+  std::map<std::size_t, Row> rows_;
+  double mean_ = 0.0, variance_ = 1.0, weight_ = 0.0;
+};
+
+void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vectors& query) {
+  MatcherConfig config;
+  config.standardisation.on = false;
+  config.relocalising.rows_scanned = 150;
+  Seen seen(places, config);
+  PlaceBelief belief(seen.memory.arena, config);
+  NaiveBelief naive;
+  std::size_t judged = 0;
+  for (const auto& descriptor : query) {
+    const SceneView view = seen.take(descriptor);
+    static_cast<void>(belief.observe(view));
+    naive.observe(view);
+    SCOPED_TRACE("frame " + std::to_string(view.newest));
+    ASSERT_NEAR(belief.new_place(), naive.new_place, 1e-9);
+    if (!belief.likeliest()) continue;
+    ++judged;
+    const Evidence& e = belief.likeliest()->evidence;
+    ASSERT_EQ(belief.likeliest()->row, naive.likeliest);
+    ASSERT_NEAR(e.odds, naive.evidence.odds, 1e-3);
+    ASSERT_NEAR(e.lead, naive.evidence.lead, 1e-6);
+    ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
+    ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);
+  }
+  EXPECT_GT(judged, query.size() / 2);
+}
+
+TEST(PlaceBeliefOracle, OnAKnownWay) {
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE(seed);
+    expect_like_the_naive_one(test::way(seed, 200, 0.5F, 1, size),
+                              test::way(seed, 200, 0.5F, 2, size));
+  }
+}
+
+TEST(PlaceBeliefOracle, OnAnUnknownOne) {
+  expect_like_the_naive_one(test::way(4, 200, 0.5F, 1, size), test::way(5, 200, 0.5F, 1, size));
+}
+
+TEST(PlaceBeliefOracle, WhereTheRobotStandsAndIsCarried) {
+  const oracle::Vectors way = test::way(6, 300, 0.5F, 2, size);
+  oracle::Vectors query(way.begin() + 20, way.begin() + 60);
+  query.insert(query.end(), 30, query.back());
+  query.insert(query.end(), way.begin() + 200, way.begin() + 260);
+  expect_like_the_naive_one(test::way(6, 300, 0.5F, 1, size), query);
+}
+
+/// All the ways in which a trace may begin and end, one by one.
+TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 40);
+  std::mt19937 random(7);
+  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (int round = 0; round < 50; ++round) {
+    const std::size_t frames = 1 + random() % 40;
+    const double before = round == 0 ? 0.0 : share();
+    const double usual = share();
+    std::vector<BeliefTraces::Step> trace;
+    for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
+    const auto found = span.find(trace, before, usual, 0.3);
+    // Frames counted from the oldest: on the trace in [first, last).
+    std::vector<double> still(frames);
+    std::vector<double> left(frames);
+    double all_still = 0.0;
+    double all_left = 0.0;
+    const auto take = [&](std::size_t first, std::size_t last, double chance) {
+      for (std::size_t i = first; i < last; ++i) {
+        const auto& step = trace[frames - 1 - i];
+        chance *= std::exp(step.gain - usual * std::max(step.novelty, 0.3));
+      }
+      const bool goes_on = last == frames;
+      const double stays = chance * (goes_on ? 1.0 : 0.003);
+      const double leaves = chance * 0.003;
+      all_still += stays;
+      all_left += leaves;
+      for (std::size_t i = first; i < last; ++i) {
+        still[i] += stays;
+        left[i] += leaves;
+      }
+    };
+    for (std::size_t first = 0; first < frames; ++first) {
+      const double begun =
+          first == 0 ? 1.0
+                     : (1.0 - before) * 0.003 * std::pow(0.997, static_cast<double>(first - 1));
+      for (std::size_t last = first + 1; last <= frames; ++last) {
+        take(first, last, begun * std::pow(0.997, static_cast<double>(last - first - 1)));
+      }
+    }
+    // Or the robot never came onto it.
+    all_still += (1.0 - before) * std::pow(0.997, static_cast<double>(frames - 1));
+    for (std::size_t i = 0; i < frames; ++i) {
+      EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
+      EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
+    }
+  }
+}
+
+TEST(TraceSpan, NoTraceIsTooLong) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 1001);
+  for (const double gain : {1.9, -1.9, 0.0}) {
+    const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3)) {
+      EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
+      EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace seqloop

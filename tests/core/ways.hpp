@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+
+#include "core/oracle.hpp"
+
+namespace seqloop::test {
+
+/// Each descriptor is given unit length.
+inline oracle::Vectors unit(oracle::Vectors drive) {
+  for (auto& descriptor : drive) {
+    double squares = 0.0;
+    for (const float value : descriptor) squares += static_cast<double>(value * value);
+    for (float& value : descriptor) value /= static_cast<float>(std::sqrt(squares));
+  }
+  return drive;
+}
+
+/// A way through places: neighbours share most of what they look like. Two visits of one way differ
+/// by noise.
+/// @param size values in a descriptor
+inline oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, std::uint32_t visit,
+                           std::size_t size = 256) {
+  std::mt19937 places(seed);
+  std::mt19937 here(seed * 7919U + visit);
+  const auto random = [](std::mt19937& engine) {
+    return static_cast<float>(engine()) / 4294967296.0F - 0.5F;
+  };
+  oracle::Vectors drive(frames, std::vector<float>(size));
+  std::vector<float> scene(size);
+  for (auto& descriptor : drive) {
+    for (std::size_t i = 0; i < size; ++i) {
+      scene[i] = 0.8F * scene[i] + random(places);
+      descriptor[i] = scene[i] + noise * random(here);
+    }
+  }
+  return unit(drive);
+}
+
+}  // namespace seqloop::test

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Writes the evidence for the likeliest row of each frame of a drive, as a CSV file to standard
+// output. Default settings; without a reference the drive closes loops.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <span>
+
+#include "seqloop/detector.hpp"
+#include "seqloop/files/npy_file.hpp"
+
+namespace {
+
+using seqloop::files::Matrix;
+
+void write(const Matrix& query, const Matrix& reference) {
+  seqloop::MatcherConfig config;
+  const bool closing = reference.rows == 0;
+  config.use = closing ? seqloop::Use::close_loops : seqloop::Use::localise;
+  seqloop::PlaceMap map(config, {closing ? query.rows : reference.rows, query.columns});
+  for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.learn(reference.row(i)));
+  for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.add(reference.row(i)));
+  seqloop::Detector detector(config, map);
+  std::puts("frame,place,odds,lead,contrast,age,margin");
+  for (std::size_t i = 0; i < query.rows; ++i) {
+    const seqloop::FrameReport report = detector.step(query.row(i));
+    if (!report.now) continue;
+    const seqloop::Evidence& e = *detector.evidence();
+    std::printf("%zu,%zu,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, report.now->place, e.odds, e.lead,
+                e.contrast, e.age, e.margin);
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::span<char*> all(words, static_cast<std::size_t>(count));
+  if (count != 2 && count != 3) {
+    std::fputs("usage: seqloop-evidence QUERY.npy [REFERENCE.npy]\n", stderr);
+    return 2;
+  }
+  try {
+    write(seqloop::files::read_npy(all[1]),
+          count == 3 ? seqloop::files::read_npy(all[2]) : Matrix{});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "seqloop-evidence: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
