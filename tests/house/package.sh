@@ -76,9 +76,9 @@ must inside sh -c 'apt-get install -y --no-install-recommends /tmp/*.deb'
 
 version=$(inside seqloop --version)
 echo "in a bare Debian: $version"
-inside seqloop run --help | grep -q -- --source
+[[ $(inside seqloop run --help) == *--source* ]]
 for page in seqloop seqloop-run seqloop-match seqloop-camera; do
-  zcat "$root/usr/share/man/man1/$page.1.gz" | grep -q 'SH SYNOPSIS' || { echo "no manual page $page"; exit 1; }
+  [[ $(zcat "$root/usr/share/man/man1/$page.1.gz") == *'SH SYNOPSIS'* ]] || { echo "no manual page $page"; exit 1; }
 done
 inside python3 - <<'END'
 import numpy
