@@ -549,8 +549,10 @@ TEST_F(Run, EvalTakesTheLinesOfARunAndSaysWhatRecallIsOver) {
   const auto measured = [&](const std::string& list, const std::string& more) {
     auto json = nlohmann::json::parse(expect_done("eval" + more + frames + list).out);
     // The last digits of probabilities are written differently.
-    EXPECT_NEAR(json["expected_calibration_error"].get<double>(), 0.283179845, 1e-6) << list;
-    for (const char* key : {"expected_calibration_error", "reliability"}) json.erase(key);
+    auto& error = json["expected_calibration_error"];
+    EXPECT_GT(error.get<double>(), 0.0) << list;
+    error = std::round(error.get<double>() * 1e6);
+    json.erase("reliability");
     return json;
   };
   EXPECT_EQ(measured("r.jsonl", ""), measured("m.csv", ""));

@@ -53,7 +53,7 @@ class Protocol(unittest.TestCase):
         self.assertGreater(recall["our descriptor, our matcher"], .95)
         self.assertGreater(recall["another descriptor, our matcher"], .9)
         self.assertLess(recall["our descriptor, dot product"], .5)
-        self.assertRegex(said, r"accepted: 1[56]\d of 200 frames, precision 1.000")
+        self.assertRegex(said, r"accepted: 19\d of 200 frames, precision 1.000")
 
 
 class Look(unittest.TestCase):
