@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole chain on drives that the project makes itself: pictures, truth, answers.
-#include <nlohmann/json.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "program/program.hpp"
@@ -46,7 +46,8 @@ TEST_F(StreetDrive, ClosesItsLoopsAsAVideoAndShowsThem) {
   std::size_t frames = 0;
   std::size_t matches = 0;
   for (std::string line; std::getline(text, line); ++frames) {
-    for (const auto& answer : nlohmann::json::parse(line)["answers"]) {
+    const auto json = nlohmann::json::parse(line);
+    for (const auto& answer : json["answers"]) {
       matches += answer["status"] == "match" ? 1U : 0U;
     }
   }
@@ -92,7 +93,8 @@ TEST_F(StreetDrive, SurvivesDamageInTheMiddle) {
   std::istringstream again(test::read_all(file("r.jsonl")));
   std::map<std::size_t, std::string> matches;  // of frames: sure ones overtake others
   for (std::string line; std::getline(again, line);) {
-    for (const auto& answer : nlohmann::json::parse(line)["answers"]) {
+    const auto json = nlohmann::json::parse(line);
+    for (const auto& answer : json["answers"]) {
       if (!answer["match"].is_null()) matches[answer["frame"]] = answer["match"].dump();
     }
   }

@@ -38,7 +38,8 @@ struct BenchSettings {
   DriveSettings drive;
 };
 
-constexpr std::array whats{"describe", "step", "search", "column", "matrix", "loop", "memory", "open"};
+constexpr std::array whats{"describe", "step", "search", "column",
+                           "matrix",   "loop", "memory", "open"};
 
 // Products of two drives: beyond these they take minutes.
 constexpr std::size_t most_matrix_places = 20'000;
