@@ -12,6 +12,8 @@ namespace {
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr float undefined_float = std::numeric_limits<float>::quiet_NaN();
 
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
@@ -39,7 +41,7 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, 0.0, 0};
+  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, none, 0.0, 0};
   end_ = frame + 1;
 }
 
@@ -63,6 +65,7 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   evidence_ = likeliest->evidence;
   const auto trace = trace_.first(belief.trace(likeliest->index, trace_));
   at(newest).novelty = trace.front().novelty;
+  at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
   const double odds = belief.remember(log_odds(*evidence_));
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
@@ -77,12 +80,33 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   const std::span<const TraceSpan::On> on =
       span_.find(trace, known ? trace_is_right(before.odds) * before.on.still : 0.0,
                  belief.usual_gain(), half * belief.usual_novelty());
-  for (std::size_t back = 0; back < trace.size(); ++back) {
+  const std::size_t frames = begun(map, newest, oldest, trace);
+  for (std::size_t back = 0; back < frames; ++back) {
     Waiting& waiting = at(newest - back);
     if (waiting.waits && waiting.frame == newest - back) {
       look_back(map.order(), waiting, trace[back].row, odds, on[back], back);
     }
   }
+}
+
+/// How many of a trace's frames count, from the newest on. Where roads meet, those that lead there
+/// look alike: within a drive, a trace begins where the belief of the time agreed with it first, or
+/// where an earlier look has found it.
+std::size_t PendingAnswers::begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
+                                  std::span<const BeliefTraces::Step> trace) noexcept {
+  std::size_t frames = trace.size();
+  if (newest - (frames - 1) <= oldest) return frames;
+  for (; frames > 1; --frames) {
+    const std::uint64_t frame = newest - (frames - 1);
+    const std::size_t row = trace[frames - 1].row;
+    const Waiting& then = at(frame);
+    constexpr double likely = 0.5;
+    if (then.frame != frame || (then.lag > 0 && then.on.still > likely)) break;
+    if (then.likeliest == none) continue;
+    const bool agrees = map.order().apart(then.likeliest, row) <= own;
+    if (agrees || map.same_place(then.likeliest, row)) break;
+  }
+  return frames;
 }
 
 /// Takes in that a trace has come through a frame.
@@ -251,6 +275,7 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
 void PendingAnswers::removed(std::size_t row) noexcept {
   for (Waiting& waiting : waiting_) {
     if (waiting.row > row) --waiting.row;
+    if (waiting.likeliest != none && waiting.likeliest > row) --waiting.likeliest;
   }
   for (FoundLine& line : lines_) {
     if (line.row > row) --line.row;

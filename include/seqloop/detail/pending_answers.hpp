@@ -75,15 +75,16 @@ class PendingAnswers {
     std::uint64_t frame;
     bool waits;
     bool readable;
-    bool believed;      // whether it lies on a trace
-    bool left;          // by the trace of the newest frame that was looked back from
-    std::size_t row;    // there
-    double odds;        // best log-odds of the trace
-    TraceSpan::On on;   // that the frame lies on it
-    std::uint64_t lag;  // frames that had come after it when it was looked back on last
-    double new_place;   // belief in none, as it came
-    double novelty;     // of the frame
-    std::size_t lines;  // found
+    bool believed;          // whether it lies on a trace
+    bool left;              // by the trace of the newest frame that was looked back from
+    std::size_t row;        // there
+    double odds;            // best log-odds of the trace
+    TraceSpan::On on;       // that the frame lies on it
+    std::uint64_t lag;      // frames that had come after it when it was looked back on last
+    double new_place;       // belief in none, as it came
+    std::size_t likeliest;  // row, as it came; `none` where there was none
+    double novelty;         // of the frame
+    std::size_t lines;      // found
   };
 
   [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept {
@@ -97,6 +98,8 @@ class PendingAnswers {
   [[nodiscard]] double margin(const PlaceMap& map, std::uint64_t frame, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
+  [[nodiscard]] std::size_t begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
+                                  std::span<const BeliefTraces::Step> trace) noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double odds,
                  const TraceSpan::On& on, std::uint64_t lag) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
