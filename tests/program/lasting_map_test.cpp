@@ -107,6 +107,9 @@ TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {
   expect_refused("match --query again.npy --map m.seqloop --session one --out m.csv", "'one'");
   expect_refused("match --query again.npy --map m.seqloop --arithmetic float --out m.csv",
                  "float euclidean");
+  // A place of an earlier session is no frame of this drive.
+  expect_refused("run --source again.npy --map m.seqloop --odometry o.tum --pose-graph g.g2o",
+                 "leave --reference and --map out");
   expect_refused("run --source again.npy --map m.seqloop --max-places 100", "120 places already");
 }
 

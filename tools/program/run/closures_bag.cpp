@@ -9,9 +9,9 @@ ClosuresBag::ClosuresBag(const std::filesystem::path& path)
     : out_(path),
       bag_([this](std::span<const std::uint8_t> bytes) { out_.write(std::as_bytes(bytes)); }) {}
 
-void ClosuresBag::begin(std::int64_t start_ns, bool closing) noexcept {
+void ClosuresBag::begin(std::int64_t start_ns, bool own_places) noexcept {
   start_ns_ = start_ns;
-  closing_ = closing;
+  own_places_ = own_places;
 }
 
 void ClosuresBag::add(std::span<const Answer> answers, const FrameTimes& times) {
@@ -23,7 +23,7 @@ void ClosuresBag::add(std::span<const Answer> answers, const FrameTimes& times) 
   for (const Answer& answer : answers) {
     if (answer.gate != Gate::match || !answer.match) continue;
     bag_.add({.stamp_ns = stamp(answer.frame),
-              .match_stamp_ns = closing_ ? stamp(answer.match->place) : 0,
+              .match_stamp_ns = own_places_ ? stamp(answer.match->place) : 0,
               .frame = answer.frame,
               .match = answer.match->place,
               .session = {},

@@ -18,8 +18,8 @@ class ClosuresBag {
   explicit ClosuresBag(const std::filesystem::path& path);
 
   /// @param start_ns when second 0 of the drive was, since 1970
-  /// @param closing  whether places are frames of the drive itself
-  void begin(std::int64_t start_ns, bool closing) noexcept;
+  /// @param own_places whether places are frames of the drive itself
+  void begin(std::int64_t start_ns, bool own_places) noexcept;
 
   /// Adds those that are accepted. @param times of the drive's frames. Throws files::IoError.
   void add(std::span<const Answer> answers, const FrameTimes& times);
@@ -31,7 +31,7 @@ class ClosuresBag {
   files::OutputFile out_;
   bags::LoopBag bag_;
   std::int64_t start_ns_ = 0;
-  bool closing_ = true;
+  bool own_places_ = true;
 };
 
 }  // namespace seqloop::program

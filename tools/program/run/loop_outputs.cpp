@@ -23,12 +23,12 @@ void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings)
                "the frames' poses by odometry (TUM) [none]");
 }
 
-LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool closing, Faults& faults)
-    : closing_(closing) {
+LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, Faults& faults)
+    : own_places_(own_places) {
   const bool wants_graph = !settings.pose_graph.empty() || !settings.trajectory.empty();
-  if (!settings.pose_graph.empty() && !closing) {
+  if (!settings.pose_graph.empty() && !own_places) {
     faults.push_back({"pose-graph", "the poses of the reference are not known",
-                      "leave --reference out: loops are closed within the drive"});
+                      "leave --reference and --map out: loops are closed within the drive"});
   }
   if (wants_graph && settings.odometry.empty()) {
     faults.push_back({settings.pose_graph.empty() ? "trajectory" : "pose-graph",
@@ -51,7 +51,7 @@ LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool closing, Fault
 void LoopOutputs::begin(const LoopOutputSettings& settings, const std::filesystem::path& source,
                         const FrameSource* recording, std::size_t sequence) {
   const std::int64_t start = start_ns(recording);
-  if (bag_) bag_->begin(start, closing_);
+  if (bag_) bag_->begin(start, own_places_);
   if (!graph_) return;
   if (recording == nullptr) {
     throw SetupError({"odometry", "a camera's cannot be read",

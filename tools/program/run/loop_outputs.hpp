@@ -32,8 +32,8 @@ void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings)
 class LoopOutputs {
  public:
   /// Opens the files. Adds faults where it cannot.
-  /// @param closing whether places are frames of the drive itself
-  LoopOutputs(const LoopOutputSettings& settings, bool closing, Faults& faults);
+  /// @param own_places whether places are frames of the drive itself
+  LoopOutputs(const LoopOutputSettings& settings, bool own_places, Faults& faults);
 
   /// Reads the odometry. @param recording null: a camera   @param sequence ds + 1
   /// Throws SetupError.
@@ -49,7 +49,7 @@ class LoopOutputs {
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
-  bool closing_;
+  bool own_places_;
   FrameTimes times_;
   std::unique_ptr<ClosuresBag> bag_;
   std::unique_ptr<PoseGraph> graph_;

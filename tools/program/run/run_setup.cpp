@@ -103,7 +103,8 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   const bool lasts = !settings.map.file.empty();
   const bool closing = settings.reference.empty() && !settings.map.read_only;
   check(settings.map, !settings.reference.empty(), faults);
-  setup.loops = std::make_unique<LoopOutputs>(settings.loops, closing, faults);
+  setup.own_places = settings.reference.empty() && !lasts;
+  setup.loops = std::make_unique<LoopOutputs>(settings.loops, setup.own_places, faults);
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);

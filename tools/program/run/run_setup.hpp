@@ -64,7 +64,10 @@ struct RunSetup {
   std::size_t descriptor_size = 0;
   std::size_t places = 0;
   std::size_t sessions = 1;
-  Fault why_places;  ///< who wants so many; a fault only where they cannot be had
+  bool own_places = false;  ///< places are frames of this drive, and go by their numbers
+  Fault why_places;         ///< who wants so many; a fault only where they cannot be had
+
+  [[nodiscard]] Capacity capacity() const noexcept { return {places, descriptor_size, sessions}; }
 
   /// Where frames come from.
   [[nodiscard]] FrameSource& source() const noexcept {

@@ -73,15 +73,13 @@ auto with_room(const RunSetup& setup, Make make) {
   throw SetupError(std::move(faults));
 }
 
-std::unique_ptr<Serving> open_serving(const RunSettings& settings,
+std::unique_ptr<Serving> open_serving(const RunSettings& settings, const RunSetup& setup,
                                       const RunConditions& conditions) {
   if (!settings.serve.address) return nullptr;
-  const bool closing = settings.reference.empty();
   nlohmann::ordered_json run = conditions_json(conditions);
-  const Capacity capacity{conditions.places, conditions.descriptor_size};
-  run["memory_planned"] = PlaceMap::bytes_needed(conditions.config, capacity) +
-                          Detector::bytes_needed(conditions.config, capacity);
-  return std::make_unique<Serving>(settings.serve, std::move(run), closing);
+  run["memory_planned"] = PlaceMap::bytes_needed(conditions.config, setup.capacity()) +
+                          Detector::bytes_needed(conditions.config, setup.capacity());
+  return std::make_unique<Serving>(settings.serve, std::move(run), setup.own_places);
 }
 
 /// Does what people wish, before the next frame. @return whether the run goes on
@@ -111,12 +109,10 @@ void run(const RunSettings& settings, Faults faults) {
                            0,
                            setup.capture,
                            {}};
-  const std::unique_ptr<Serving> serving = open_serving(settings, conditions);
+  const std::unique_ptr<Serving> serving = open_serving(settings, setup, conditions);
 
   // Start-up: the map, then every path once, before the first frame counts.
-  PlaceMap map = with_room(setup, [&] {
-    return PlaceMap(setup.config, {setup.places, setup.descriptor_size, setup.sessions});
-  });
+  PlaceMap map = with_room(setup, [&] { return PlaceMap(setup.config, setup.capacity()); });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     std::function<void(const Frame&)> look;
@@ -143,10 +139,8 @@ void run(const RunSettings& settings, Faults faults) {
   setup.out->heed(interrupted);
   const live::ThreadCounters warm = live::thread_counters();
 
-  // In a map that lasts, a place goes by its own number.
-  const bool closing = settings.reference.empty() && !setup.map;
-  SourceNumbers numbers =
-      with_room(setup, [&] { return SourceNumbers(setup.config, closing ? &map : nullptr); });
+  SourceNumbers numbers = with_room(
+      setup, [&] { return SourceNumbers(setup.config, setup.own_places ? &map : nullptr); });
   FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get());
   std::uint64_t blank_frames = 0;
   bool map_full = false;
