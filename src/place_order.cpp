@@ -5,6 +5,23 @@
 #include <iterator>
 
 namespace seqloop {
+namespace {
+
+/// The first row of a run from which on `holds`; its end if there is none. Work: log rows.
+template <class Holds>
+std::size_t first_row(CandidateRun run, Holds holds) noexcept {
+  while (run.first < run.last) {
+    const std::size_t middle = run.first + (run.last - run.first) / 2;
+    if (holds(middle)) {
+      run.last = middle;
+    } else {
+      run.first = middle + 1;
+    }
+  }
+  return run.first;
+}
+
+}  // namespace
 
 PlaceOrder::PlaceOrder(Arena& arena, std::size_t slots, std::size_t sessions)
     : slots_(arena.take<std::uint32_t>("order of places", slots)),
@@ -19,18 +36,19 @@ bool PlaceOrder::begin_session() noexcept {
   return true;
 }
 
+template <class Value>
+std::size_t PlaceOrder::last_begun(Value value, Value Begin::*by) const noexcept {
+  const auto later = begins_.first(sessions_).subspan(1);
+  const auto behind = std::ranges::upper_bound(later, value, {}, by);
+  return static_cast<std::size_t>(std::distance(later.begin(), behind));
+}
+
 std::size_t PlaceOrder::session_of(std::size_t row) const noexcept {
-  if (sessions_ == 1) return 0;
-  const auto begins = begins_.first(sessions_);
-  const auto behind = std::ranges::upper_bound(begins.subspan(1), row, {}, &Begin::row);
-  return static_cast<std::size_t>(std::distance(begins.subspan(1).begin(), behind));
+  return last_begun(row, &Begin::row);
 }
 
 std::size_t PlaceOrder::session_of_number(std::uint64_t number) const noexcept {
-  if (sessions_ == 1) return 0;
-  const auto begins = begins_.first(sessions_);
-  const auto behind = std::ranges::upper_bound(begins.subspan(1), number, {}, &Begin::number);
-  return static_cast<std::size_t>(std::distance(begins.subspan(1).begin(), behind));
+  return last_begun(number, &Begin::number);
 }
 
 std::size_t PlaceOrder::apart(std::size_t a, std::size_t b) const noexcept {
@@ -39,31 +57,15 @@ std::size_t PlaceOrder::apart(std::size_t a, std::size_t b) const noexcept {
 }
 
 std::size_t PlaceOrder::row_of_frame(std::uint64_t frame) const noexcept {
-  auto [first, last] = session(sessions_ - 1);
-  while (first < last) {
-    const std::size_t middle = first + (last - first) / 2;
-    if (this->frame(middle) < frame) {
-      first = middle + 1;
-    } else {
-      last = middle;
-    }
-  }
-  return first;
+  return first_row(session(sessions_ - 1),
+                   [&](std::size_t row) { return this->frame(row) >= frame; });
 }
 
 std::optional<std::size_t> PlaceOrder::row_of_number(std::uint64_t number) const noexcept {
-  std::size_t first = 0;
-  std::size_t last = size_;
-  while (first < last) {
-    const std::size_t middle = first + (last - first) / 2;
-    if (this->number(middle) < number) {
-      first = middle + 1;
-    } else {
-      last = middle;
-    }
-  }
-  if (first == size_ || this->number(first) != number) return std::nullopt;
-  return first;
+  const std::size_t row =
+      first_row({0, size_}, [&](std::size_t r) { return this->number(r) >= number; });
+  if (row == size_ || this->number(row) != number) return std::nullopt;
+  return row;
 }
 
 std::size_t PlaceOrder::append(std::uint64_t frame, std::uint64_t number) noexcept {

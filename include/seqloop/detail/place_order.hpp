@@ -135,6 +135,10 @@ class PlaceOrder {
     std::uint64_t number;
   };
 
+  /// The last session that begins at this value or before it. @param by what sessions rise in
+  template <class Value>
+  [[nodiscard]] std::size_t last_begun(Value value, Value Begin::*by) const noexcept;
+
   bool straight_ = true;
   std::size_t begin_ = 0;  // where the oldest row stands in slots_
   std::size_t size_ = 0;
