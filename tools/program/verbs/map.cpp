@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "program/maps/exchange.hpp"
-#include "program/maps/new_map.hpp"
+#include "program/map/exchange.hpp"
+#include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
 #include "program/process/say.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "program/maps/new_map.hpp"
+#include "program/map/new_map.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

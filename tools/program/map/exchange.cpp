@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "program/maps/exchange.hpp"
+#include "program/map/exchange.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 
 #include "files/npy_header.hpp"
 #include "files/output_folder.hpp"
-#include "program/maps/new_map.hpp"
+#include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
 #include "seqloop/fault.hpp"
 
