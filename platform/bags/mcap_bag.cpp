@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "bags/crc32.hpp"
 #include "bags/decompress.hpp"
 #include "bags/mcap_records.hpp"
 #include "seqloop/fault.hpp"
@@ -174,9 +173,7 @@ class Walk {
     chunk_ = unpacked.bytes;
     if (whole) chunk_fault_ = unpacked.fault;
     if (!unpacked.fault.empty() || head->crc == 0) return;
-    Crc32 crc;
-    crc.add(chunk_);
-    if (crc.value() == head->crc) return;
+    if (mcap::checksum(chunk_) == head->crc) return;
     chunk_ = {};
     chunk_fault_ = "the check sum of a chunk is wrong";
   }
@@ -273,10 +270,9 @@ class McapBag : public Bag {
     if (start == 0 || start > footer || footer - start > most_summary_bytes) return false;
     std::vector<std::uint8_t> summary(static_cast<std::size_t>(footer - start));
     if (!bytes_->read(start, summary)) return false;
-    Crc32 crc;
-    crc.add(summary);
-    crc.add(Bytes(end).first(mcap::head_bytes + mcap::footer_bytes - sizeof sum));
-    if (sum == 0 || crc.value() == sum) return take_summary(summary);
+    const Bytes summed = Bytes(end).first(mcap::head_bytes + mcap::footer_bytes - sizeof sum);
+    if (sum == 0 || mcap::checksum(summed, mcap::checksum(summary)) == sum)
+      return take_summary(summary);
     notes_.emplace_back("the check sum of the summary is wrong: it is not used");
     return false;
   }

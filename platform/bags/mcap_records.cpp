@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bags/mcap_records.hpp"
 
+#include <zlib.h>
+
 namespace seqloop::bags::mcap {
 namespace {
 
@@ -11,6 +13,10 @@ std::optional<Read> whole(const Cursor& cursor, Read read) {
 }
 
 }  // namespace
+
+std::uint32_t checksum(Bytes bytes, std::uint32_t before) noexcept {
+  return static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
+}
 
 std::optional<Record> take_record(Bytes& bytes) noexcept {
   Cursor cursor(bytes);

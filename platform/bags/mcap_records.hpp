@@ -35,6 +35,10 @@ inline constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0'
 inline constexpr std::size_t head_bytes = 9;     ///< of a record: its opcode and its length
 inline constexpr std::size_t footer_bytes = 20;  ///< of the footer, without its head
 
+/// The check sum of chunks and summaries: CRC-32 as in zlib and Ethernet.
+/// @param before that of the bytes before these; 0 where there are none
+[[nodiscard]] std::uint32_t checksum(Bytes bytes, std::uint32_t before = 0) noexcept;
+
 /// Reads what a record holds, in order. Beyond its end everything is zero or empty, and `whole` is
 /// false from then on.
 class Cursor {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "bags/crc32.hpp"
 #include "bags/mcap_records.hpp"
 
 namespace seqloop::bags {
@@ -86,13 +85,11 @@ void McapWriter::add(std::int64_t time_ns, std::span<const std::uint8_t> message
 void McapWriter::end_chunk() {
   if (chunk_.index.empty()) return;
   const std::uint64_t size = chunk_.records.size();
-  Crc32 crc;
-  crc.add(chunk_.records);
   const Content chunk = Content().record(Opcode::chunk, Content()
                                                             .number(chunk_.first)
                                                             .number(chunk_.last)
                                                             .number(size)
-                                                            .number(crc.value())
+                                                            .number(mcap::checksum(chunk_.records))
                                                             .text("")
                                                             .number(size)
                                                             .raw(chunk_.records));
@@ -149,9 +146,7 @@ void McapWriter::finish() {
       .number(std::uint64_t{mcap::footer_bytes})
       .number(start)
       .number(std::uint64_t{0});
-  Crc32 crc;
-  crc.add(end.bytes());
-  put(end.number(crc.value()).raw(mcap::magic).bytes());
+  put(end.number(mcap::checksum(end.bytes())).raw(mcap::magic).bytes());
 }
 
 void McapWriter::put(const Bytes& bytes) {

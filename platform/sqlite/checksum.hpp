@@ -10,7 +10,7 @@
 namespace seqloop::sqlite {
 
 /// CRC-32 as zlib, PNG and Ethernet compute it, so that anyone can check it with what there is.
-/// Work: 16 bytes at a time.
+/// @param before that of the bytes before these; 0 where there are none
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes,
                                   std::uint32_t before = 0) noexcept;
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bags/byte_source.hpp"
-#include "bags/crc32.hpp"
+#include "bags/mcap_records.hpp"
 
 namespace seqloop::test {
 
@@ -114,13 +114,11 @@ class McapBytes {
   /// @param packed the records as they lie in the file
   McapBytes& chunk(const McapBytes& records, std::string_view compression,
                    std::span<const std::uint8_t> packed) {
-    bags::Crc32 crc;
-    crc.add(records.bytes);
     return record(6, McapBytes()
                          .put(std::uint64_t{0})
                          .put(std::uint64_t{0})
                          .put(std::uint64_t{records.bytes.size()})
-                         .put(crc.value())
+                         .put(bags::mcap::checksum(records.bytes))
                          .text(compression)
                          .put(std::uint64_t{packed.size()})
                          .raw(packed));
@@ -132,10 +130,10 @@ class McapBytes {
     const std::uint64_t start = summary.bytes.empty() ? 0 : bytes.size();
     const McapBytes end =
         McapBytes().put(std::uint8_t{2}).put(std::uint64_t{20}).put(start).put(std::uint64_t{0});
-    bags::Crc32 crc;
-    crc.add(summary.bytes);
-    crc.add(end.bytes);
-    return raw(summary.bytes).raw(end.bytes).put(crc.value()).magic();
+    return raw(summary.bytes)
+        .raw(end.bytes)
+        .put(bags::mcap::checksum(end.bytes, bags::mcap::checksum(summary.bytes)))
+        .magic();
   }
 
   ByteVector bytes;
