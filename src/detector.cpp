@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "seqloop/detail/keep_lowest.hpp"
+#include "seqloop/detail/detector_faults.hpp"
+#include "seqloop/detail/lowest_lines.hpp"
 #include "seqloop/detail/portable_math.hpp"
 #include "seqloop/difference.hpp"
 
@@ -16,35 +16,7 @@ namespace seqloop {
 namespace {
 
 const MatcherConfig& checked(const MatcherConfig& config, const PlaceMap& map) {
-  Faults faults = validate(config);
-  if (config.use == Use::localise && map.size() == 0) {
-    faults.push_back(
-        {"map", "it has no places", "add the reference drive before localising in it"});
-  }
-  if (config.use == Use::close_loops && !map.has_room_for_session()) {
-    faults.push_back(
-        {"sessions",
-         "the map has no room for one more than its " + std::to_string(map.order().sessions()),
-         "give it room for the drive that is added, too"});
-  }
-  if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
-      map.capacity() < least_places(config)) {
-    faults.push_back({"places",
-                      std::to_string(map.capacity()) + " leave no candidates once the map is full",
-                      "take " + std::to_string(least_places(config)) +
-                          " or more with this exclude and sequence_length"});
-  }
-  if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
-      map.full_map() != config.full_map) {
-    faults.push_back({"map", "it was made for another configuration",
-                      "give both the same arithmetic, difference, relocalising and full_map"});
-  }
-  if (map.size() != 0 && config.standardisation.on != (map.statistics().frames() != 0)) {
-    faults.push_back({"map",
-                      config.standardisation.on ? "its places were not standardised"
-                                                : "its places were standardised",
-                      "standardise both the map and the query, or neither"});
-  }
+  Faults faults = detector_faults(config, map);
   if (!faults.empty()) throw SetupError(std::move(faults));
   return config;
 }
@@ -80,42 +52,6 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
 }
 
 }  // namespace
-
-std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
-  check(config, capacity);
-  std::vector<BufferSize> buffers;
-  const Detector measured(Arena(buffers), config, nullptr, capacity, ArenaMemory());
-  return buffers;
-}
-
-Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) {
-  const std::size_t window = config.sequence_length + 1;
-  const std::uint64_t lines =
-      velocity_range(config.sequence_length, config.vmin, config.vmax).count();
-  const std::size_t change = config.candidates == Candidates::adaptive ? ChangeDegree::reach : 0;
-  CandidateProposals::Looks looks{0, 0};
-  if (scans(config)) looks = CandidateProposals::most_looks(config, capacity.places);
-  if (config.decision == Decision::probability) looks.closely += PlaceBelief::most_sketches;
-  if (relocalises(config)) {
-    const std::size_t rows = std::min(CandidateBudget::most_rows(config), capacity.places);
-    return {rows, distances_a_frame(config) + change, rows * lines, looks.scanned, looks.closely};
-  }
-  // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
-  // column that repeats another (`skip`) has as many rows more to look at as it is younger, and
-  // columns that reach the newest places grow with them. Elsewhere a full search finds the whole
-  // window empty.
-  std::uint64_t distances = capacity.places;
-  if (config.candidates != Candidates::all) {
-    distances *= window;
-  } else if (config.use == Use::close_loops) {
-    const std::size_t ds = config.sequence_length;
-    const std::size_t reach = ds / 2 + (config.enhance ? config.rwindow / 2 : 0);
-    const std::size_t growing = reach - std::min(reach, config.exclude);
-    distances += ds * (ds + 1) / 2 + (ds + growing) * growing;
-  }
-  return {capacity.places, distances + change, capacity.places * lines, looks.scanned,
-          looks.closely};
-}
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
     : Detector(config, map,
@@ -221,32 +157,6 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   }
 }
 
-/// Keeps the best lines of the centre frame, no neighbours among them.
-void Detector::keep_lines(const BestRow& best, std::uint64_t centre) noexcept {
-  std::array<FoundLine, PendingAnswers::lines_kept> lines;
-  std::size_t count = 0;
-  const std::span<const double> scores = search_.scores();
-  for (const CandidateRun run : budget_.runs()) {
-    for (std::size_t row = run.first; row < run.last; ++row) {
-      constexpr std::size_t near = 6;
-      const double score = scores[row];
-      if (score == std::numeric_limits<double>::infinity()) continue;
-      const CandidateRun session = map_->order().around(row);
-      const std::size_t first = std::max({run.first, session.first, row - std::min(row, near)});
-      const std::size_t last = std::min({run.last, session.last, row + near + 1});
-      bool lowest = true;
-      for (std::size_t other = first; other < last; ++other) {
-        lowest = lowest && (scores[other] > score || (scores[other] == score && other >= row));
-      }
-      if (!lowest) continue;
-      const double uniqueness = row == best.row ? best.uniqueness : score / best.score;
-      count = keep_lowest(std::span<FoundLine>(lines), count,
-                          FoundLine{row, score, uniqueness, search_.line(row)}, &FoundLine::score);
-    }
-  }
-  pending_.found(centre, std::span(lines).first(count));
-}
-
 std::span<const Answer> Detector::finish() noexcept {
   pending_.clear();
   const std::uint64_t end = queries_.frames();
@@ -296,7 +206,11 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
                                      keep_runner_up, proposals_.proposals(), rows);
   if (best) report.work.candidates = best->scored;
   if (readable) decide(report, best);
-  if (best && config_.decision == Decision::probability) keep_lines(*best, *report.frame);
+  if (best && config_.decision == Decision::probability) {
+    std::array<FoundLine, PendingAnswers::lines_kept> lines;
+    const std::size_t count = lowest_lines(search_, map_->order(), budget_.runs(), *best, lines);
+    pending_.found(*report.frame, std::span(lines).first(count));
+  }
 
   // Update: what the next frame starts from.
   double change = 1.0;

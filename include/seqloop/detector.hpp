@@ -131,7 +131,6 @@ class Detector {
   [[nodiscard]] FrameReport take(std::span<const float> descriptor) noexcept;
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
   [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
-  void keep_lines(const BestRow& best, std::uint64_t centre) noexcept;
   void report_due(FrameReport& report, bool readable) noexcept;
   [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] bool become_place() noexcept;

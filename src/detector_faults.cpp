@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/detail/detector_faults.hpp"
+
+#include <string>
+
+namespace seqloop {
+
+Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
+  Faults faults = validate(config);
+  if (config.use == Use::localise && map.size() == 0) {
+    faults.push_back(
+        {"map", "it has no places", "add the reference drive before localising in it"});
+  }
+  if (config.use == Use::close_loops && !map.has_room_for_session()) {
+    faults.push_back(
+        {"sessions",
+         "the map has no room for one more than its " + std::to_string(map.order().sessions()),
+         "give it room for the drive that is added, too"});
+  }
+  if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
+      map.capacity() < least_places(config)) {
+    faults.push_back({"places",
+                      std::to_string(map.capacity()) + " leave no candidates once the map is full",
+                      "take " + std::to_string(least_places(config)) +
+                          " or more with this exclude and sequence_length"});
+  }
+  if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
+      map.full_map() != config.full_map) {
+    faults.push_back({"map", "it was made for another configuration",
+                      "give both the same arithmetic, difference, relocalising and full_map"});
+  }
+  if (map.size() != 0 && config.standardisation.on != (map.statistics().frames() != 0)) {
+    faults.push_back({"map",
+                      config.standardisation.on ? "its places were not standardised"
+                                                : "its places were standardised",
+                      "standardise both the map and the query, or neither"});
+  }
+  return faults;
+}
+
+}  // namespace seqloop
