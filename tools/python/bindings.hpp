@@ -28,6 +28,15 @@ using Array = pybind11::array;
 /// Name and help of every option, as keyword arguments.
 [[nodiscard]] pybind11::dict described(const program::OptionTable& options);
 
+/// Those of the options that `add` gives a table.
+template <class Settings>
+[[nodiscard]] pybind11::dict described(void (*add)(program::OptionTable&, Settings&)) {
+  Settings settings;
+  program::OptionTable options;
+  add(options, settings);
+  return described(options);
+}
+
 /// From now on SetupError arrives in Python as `error`, of which `faults` holds a tuple
 /// (what, why, remedy) for each fault, flags spelt as keyword arguments.
 void translate_faults(const pybind11::object& error);

@@ -139,13 +139,6 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
           as_array(curve, {static_cast<py::ssize_t>(measures.curve.size()), py::ssize_t{2}}));
 }
 
-py::dict settings() {
-  program::MatcherSettings matcher;
-  program::OptionTable options;
-  add_matcher_options(options, matcher);
-  return described(options);
-}
-
 }  // namespace
 
 /// A copy of an array of descriptors, of unit length where Euclid compares, as the program reads
@@ -182,7 +175,7 @@ void add_recordings(py::module_& module) {
   module.def("evaluate", &evaluate, py::arg("query"), py::arg("match"), py::arg("threshold"),
              py::arg("probability"), py::arg("accepted").none(true), py::arg("threshold_on"),
              py::arg("pairs").none(true), py::arg("frames"));
-  module.def("settings", &settings);
+  module.def("settings", [] { return described(program::add_matcher_options); });
 }
 
 }  // namespace seqloop::python

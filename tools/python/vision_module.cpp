@@ -106,13 +106,6 @@ class PictureDescriber {
   std::unique_ptr<Describer> describer_;
 };
 
-py::dict settings() {
-  program::DriveSettings drive;
-  program::OptionTable options;
-  add_drive_options(options, drive);
-  return described(options);
-}
-
 }  // namespace
 }  // namespace seqloop::python
 
@@ -131,8 +124,10 @@ PYBIND11_MODULE(_vision, module) {
       "training=).\n"
       "Errors: SetupError, a ValueError with every fault at once.")
       .def(py::init<const py::kwargs&>())
-      .def_static("settings", &seqloop::python::settings,
-                  "Every setting of a describer, and what it does.")
+      .def_static(
+          "settings",
+          [] { return seqloop::python::described(seqloop::program::add_drive_options); },
+          "Every setting of a describer, and what it does.")
       .def_property_readonly("size", &PictureDescriber::size, "D, values in a descriptor.")
       .def("describe", &PictureDescriber::describe, py::arg("picture"),
            "The descriptor of one picture: float32 [D], of unit length, or zeros where the\n"
