@@ -67,7 +67,7 @@ class Imports(unittest.TestCase):
         needed = subprocess.run(["readelf", "-d", seqloop._core.__file__], check=True, capture_output=True, text=True)
         libraries = [line.split("[")[1].split("]")[0] for line in needed.stdout.splitlines() if "NEEDED" in line]
         for library in libraries:
-            self.assertRegex(library, r"^(libfmt|libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so")
+            self.assertRegex(library, r"^(libfmt|libsqlite3|libz|libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so")
 
     def test_help_is_enough_to_begin(self) -> None:
         shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop)"], check=True,
@@ -86,7 +86,7 @@ class Settings(unittest.TestCase):
         shown = program("match", "--help-all").stdout
         flags = {line.split()[0][2:].replace("-", "_") for line in shown.splitlines() if line.strip().startswith("--")}
         others = {"reference", "query", "out", "config", "help_all", "version"}
-        others |= {"map", "read_only", "session", "save_every_s"}  # maps in files are not here yet
+        others |= {"map", "read_only", "session", "save_every_s"}  # of PlaceMap.open alone
         self.assertEqual(set(seqloop.settings()), flags - others)
         shown = program("describe", "--help-all").stdout
         for name in seqloop.Describer.settings():
@@ -299,6 +299,20 @@ class SameAsTheProgram(unittest.TestCase):
             self.assertEqual(as_csv(seqloop.match(self.reference, self.query, **settings)), out.read_text())
         program("match", "--query", names[0], "--out", out, "--exclude", 20)
         self.assertEqual(as_csv(seqloop.match(None, self.reference, exclude=20)), out.read_text())
+
+    def test_a_setting_that_goes_by_the_size_of_the_map(self) -> None:
+        first, again = drives(6000, 16)
+        query = again[5000:5060]
+        for name, rows in (("large", first), ("short", query)):
+            numpy.save(self.work / f"{name}.npy", rows)
+        out = self.work / "matches.csv"
+        said = []
+        for seconds in (20, .04):
+            program("match", "--reference", self.work / "large.npy", "--query", self.work / "short.npy", "--out", out,
+                    "--relocalise-s", seconds)
+            said.append(out.read_text())
+            self.assertEqual(as_csv(seqloop.match(first, query, relocalise_s=seconds)), said[-1])
+        self.assertNotEqual(said[0], said[1])
 
     def test_answers_frame_by_frame(self) -> None:
         matches = seqloop.match(self.reference, self.query)

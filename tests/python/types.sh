@@ -21,6 +21,12 @@ for answer in detector.step(drive[0]).answers + detector.finish():
     if answer.gate == "match" and answer.match is not None:
         print(answer.match.place + 1, answer.probability)
 measures = seqloop.evaluate(matches, numpy.array([[1, 2]]), tolerance=2)
+with seqloop.PlaceMap.open("map.seqloop", describer.size, describer=describer.fingerprint, read_only=True,
+                           ds=20) as lasting:
+    session, frame = lasting.where(3)
+    print(session.upper(), None if frame is None else frame + 1, lasting.saved + 1)
+    seqloop.Detector(lasting).step(drive[0], time_s=1.5)
+print(seqloop.map_info("map.seqloop").sessions[0].began_ns + seqloop.merge_maps(["a", "b"], "c")[1])
 print(measures.recall.hex(), seqloop.differences(drive, drive).shape)
 END
 cat >"$work/bad.py" <<'END'
@@ -33,6 +39,7 @@ detector.step(wrong)
 report = detector.step(None)
 report.gate == "matched"
 report.answers[0].match.place
+seqloop.map_info("map.seqloop").sessions[0].places = 3
 END
 MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --cache-dir "$work/cache" \
   "$source/tools/python/seqloop" "$work/good.py"
@@ -42,4 +49,4 @@ if MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --c
   exit 1
 fi
 cat "$work/found"
-[ "$(grep -c 'error:' "$work/found")" = 3 ]
+[ "$(grep -c 'error:' "$work/found")" = 4 ]

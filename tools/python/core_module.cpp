@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: MIT
 // The part of the package that needs no pictures, and so loads no OpenCV.
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <optional>
-#include <utility>
+#include <string>
+#include <vector>
 
-#include "program/drives/map_builder.hpp"
-#include "program/options/flag_names.hpp"
-#include "program/options/verb.hpp"
 #include "python/bindings.hpp"
+#include "python/map.hpp"
+#include "python/map_files.hpp"
 #include "python/recordings.hpp"
 #include "python/reports.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
-#include "seqloop/files/descriptor_source.hpp"
 
 namespace seqloop::python {
 namespace {
@@ -26,81 +25,8 @@ namespace py = pybind11;
 
 using Unlocked = py::gil_scoped_release;
 
-/// A map, and what keeps threads apart that use it.
-class Map {
- public:
-  Map(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
-      const py::kwargs& settings)
-      : Map(Capacity{static_cast<std::size_t>(std::max<std::int64_t>(places, 0)),
-                     static_cast<std::size_t>(std::max<std::int64_t>(descriptor_size, 0))},
-            close_loops, settings) {}
-
-  void add_drive(const Array& descriptors) {
-    Faults faults;
-    if (config_.use == Use::close_loops) {
-      faults.push_back({"map", "it is for closing loops: it takes its places from the drive",
-                        "leave close_loops out to localise in an earlier drive"});
-    }
-    std::optional<files::Matrix> drive;
-    program::collect(faults,
-                     [&] { drive = matrix(descriptors, "descriptors", config_.difference); });
-    if (drive && drive->columns != map_.descriptor_size()) {
-      faults.push_back({"descriptors",
-                        "a row has " + std::to_string(drive->columns) + " values, the map's have " +
-                            std::to_string(map_.descriptor_size()),
-                        "describe all with the same describer"});
-    }
-    program::refuse(std::move(faults));
-    const Unlocked unlocked;
-    const std::scoped_lock lock(mutex_);
-    if (map_.size() != 0) {
-      throw SetupError({"map", "it holds a drive already", "make a map for each drive"});
-    }
-    files::DescriptorSource source(std::move(*drive));
-    program::Progress silent;
-    program::fill_map(map_, source, nullptr, config_, silent);
-  }
-
-  [[nodiscard]] std::size_t size() {
-    const Unlocked unlocked;
-    const std::scoped_lock lock(mutex_);
-    return map_.size();
-  }
-
-  [[nodiscard]] const MatcherConfig& config() const noexcept { return config_; }
-  [[nodiscard]] PlaceMap& places() noexcept { return map_; }
-  [[nodiscard]] std::mutex& mutex() noexcept { return mutex_; }
-
-  /// To be called by a detector, with the lock. One that closes loops shares its map with none.
-  void claim() {
-    if (config_.use != Use::close_loops) return;
-    if (claimed_) {
-      throw SetupError({"map", "another detector adds its drive to it", "make another map"});
-    }
-    claimed_ = true;
-  }
-
- private:
-  Map(const Capacity& capacity, bool close_loops, const py::kwargs& settings)
-      : config_(checked(capacity, close_loops, settings)), map_(config_, capacity) {}
-
-  static MatcherConfig checked(const Capacity& capacity, bool close_loops,
-                               const py::kwargs& settings) {
-    Faults faults;
-    const MatcherConfig config =
-        config_of(close_loops ? Use::close_loops : Use::localise, settings, faults);
-    for (Fault& fault : validate(capacity, config)) {
-      faults.push_back(program::in_flags(std::move(fault)));
-    }
-    program::refuse(std::move(faults));
-    return config;
-  }
-
-  std::mutex mutex_;
-  MatcherConfig config_;
-  PlaceMap map_;
-  bool claimed_ = false;
-};
+// Of a map in a file, where no time is given; as `seqloop match` has it.
+constexpr double frames_a_second = 10.0;
 
 class Stepper {
  public:
@@ -109,17 +35,37 @@ class Stepper {
     const std::scoped_lock lock(map.mutex());
     map.claim();
     detector_.emplace(map.config(), map.places());
+    map.begin();
   }
 
-  Report step(const std::optional<Array>& descriptor) {
+  Report step(const std::optional<Array>& descriptor, std::optional<double> time_s) {
     std::span<const float> values;
     if (descriptor) values = python::descriptor(*descriptor, map_->places().descriptor_size());
-    const Unlocked unlocked;
-    const std::scoped_lock lock(guard());
-    if (map_->config().difference == Difference::euclidean) check_length(values);
-    stepped_ = true;
-    const FrameReport report = detector_->step(values);
-    return {report, {report.answers.begin(), report.answers.end()}};
+    if (time_s && !std::isfinite(*time_s)) {
+      throw SetupError({"time_s", "it is not finite", "give seconds, or leave it out"});
+    }
+    std::optional<std::string> trouble;
+    Report report;
+    {
+      const Unlocked unlocked;
+      const std::scoped_lock lock(guard());
+      program::LastingMap* const file = kept();
+      if (file != nullptr && rest_) {
+        throw SetupError({"detector", "its drive is over, and saved", "open the map again"});
+      }
+      if (map_->config().difference == Difference::euclidean) check_length(values);
+      stepped_ = true;
+      report.report = detector_->step(values);
+      report.answers.assign(report.report.answers.begin(), report.report.answers.end());
+      if (file != nullptr) {
+        const std::uint64_t frame = report.report.newest;
+        file->note(*detector_, frame, frame,
+                   time_s.value_or(static_cast<double>(frame) / frames_a_second), report.answers);
+        trouble = file->trouble();
+      }
+    }
+    if (trouble) warn(*trouble);
+    return report;
   }
 
   void skip(std::uint64_t frames) {
@@ -131,8 +77,18 @@ class Stepper {
   std::vector<Answer> finish() {
     const Unlocked unlocked;
     const std::scoped_lock lock(guard());
-    const std::span<const Answer> answers = detector_->finish();
-    return {answers.begin(), answers.end()};
+    program::LastingMap* const file = kept();
+    if (file == nullptr || !rest_) {
+      const std::span<const Answer> answers = detector_->finish();
+      rest_.emplace(answers.begin(), answers.end());
+    }
+    const auto unsaved = file != nullptr ? file->finish(*detector_, *rest_) : std::nullopt;
+    if (unsaved) {
+      const py::gil_scoped_acquire locked;
+      PyErr_SetString(PyExc_OSError, ("not all of the drive is saved: " + *unsaved).c_str());
+      throw py::error_already_set();
+    }
+    return *rest_;
   }
 
   /// @return [places]; NaN where nothing was computed
@@ -157,6 +113,16 @@ class Stepper {
     return map_->config().use == Use::close_loops ? map_->mutex() : mutex_;
   }
 
+  /// Where its drive is saved; null: nowhere. A map that is only read is in memory, whole.
+  [[nodiscard]] program::LastingMap* kept() {
+    return map_->config().use == Use::close_loops ? map_->file() : nullptr;
+  }
+
+  /// A report is not lost where warnings are errors.
+  static void warn(const std::string& trouble) {
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, trouble.c_str(), 1) != 0) PyErr_WriteUnraisable(nullptr);
+  }
+
   /// What a detector takes for a frame that could not be read is more likely a mistake here.
   static void check_length(std::span<const float> values) {
     const double squares = squared_norm(values);
@@ -170,6 +136,7 @@ class Stepper {
   std::mutex mutex_;
   std::optional<Detector> detector_;  // always there
   bool stepped_ = false;
+  std::optional<std::vector<Answer>> rest_;  // once the drive is over
 };
 
 }  // namespace
@@ -196,6 +163,39 @@ PYBIND11_MODULE(_core, module) {
                   "Errors: SetupError, a ValueError with every fault at once.")
       .def(py::init<std::int64_t, std::int64_t, bool, const py::kwargs&>(), py::arg("max_places"),
            py::arg("descriptor_size"), py::arg("close_loops") = false)
+      .def_static(
+          "open",
+          [](const std::filesystem::path& map, std::int64_t size,
+             std::optional<std::int64_t> places, const std::string& describer,
+             const py::kwargs& settings) {
+            return Map::open(map, size, places, describer, settings);
+          },
+          py::arg("map"), py::arg("descriptor_size"), py::arg("max_places") = py::none(),
+          py::kw_only(), py::arg("describer") = "descriptors",
+          "A map that lasts, in a file: the same as of `seqloop run --map` and `match --map`.\n\n"
+          "One detector localises in all of its sessions, closes loops, and adds its drive as\n"
+          "another session while it steps; finish() saves the rest. Several may share a map that\n"
+          "is only read. `with` closes the file.\n"
+          "map: made where it is missing. descriptor_size: D.\n"
+          "max_places: most that it can hold; None: what it has, and 20,000 more.\n"
+          "describer: what describes the drive, Describer.fingerprint or words of yours; only "
+          "what\n"
+          "was described alike can be compared.\n"
+          "read_only: localise in it, and leave it as it is. session: name of this drive, when it\n"
+          "began by default. save_every_s: seconds of driving that may be unsaved, 1.\n"
+          "settings: as seqloop.settings() lists them.\n"
+          "Errors: SetupError: held by another process, of another form, damaged, no space, …")
+      .def("where", &Map::where, py::arg("place"),
+           "(session, frame) where a place of a map in a file was seen; the frame is None once\n"
+           "the place is forgotten. Errors: SetupError.")
+      .def_property_readonly("saved", &Map::saved,
+                             "Frames of this drive, from the first on, that are on the disk for\n"
+                             "good. Errors: SetupError where the map is in no file.")
+      .def("close", &Map::close,
+           "Closes the file. What was stepped through since the last save, and not finished, is\n"
+           "lost. A map in memory alone stays as it is.")
+      .def("__enter__", [](const py::object& map) { return map; })
+      .def("__exit__", [](Map& map, const py::args& /*why*/) { map.close(); })
       .def("add_drive", &Map::add_drive, py::arg("descriptors"),
            "Takes in the drive to localise in, whole: descriptors [N, D], floating point.\n\n"
            "Rows are brought to unit length; a blank row, all zeros, shows what the one before\n"
@@ -213,20 +213,25 @@ PYBIND11_MODULE(_core, module) {
                       "one a thread. To close loops: empty, and this detector's alone.\n"
                       "Errors: SetupError.")
       .def(py::init<Map&>(), py::arg("map"), py::keep_alive<1, 2>())
-      .def("step", &Stepper::step, py::arg("descriptor").none(true),
+      .def("step", &Stepper::step, py::arg("descriptor").none(true), py::arg("time_s") = py::none(),
            "Takes the next frame, and answers each frame whose answer is due.\n\n"
            "descriptor: float32 [D] in C order, of unit length; read where it lies, without a\n"
            "copy and without the interpreter's lock. None: the frame could not be read. NaN,\n"
            "infinity and zeros count as such a frame, too.\n"
+           "time_s: when it was taken, seconds; a map in a file keeps it. None: ten frames a "
+           "second.\n"
            "Errors: SetupError for another shape, type or length; then nothing has changed.")
       .def("skip", &Stepper::skip, py::arg("frames"),
            "Takes note of frames that never came: the camera lost them, or they were dropped.")
       .def("finish", &Stepper::finish,
-           "The recording is over: answers every frame that still waits.")
+           "The recording is over: answers every frame that still waits.\n\n"
+           "A map in a file has all of the drive then. OSError: not all could be saved; the same\n"
+           "call tries again, and gives the same answers.")
       .def("newest_column", &Stepper::newest_column,
            "The newest frame's column of the difference matrix, float32 [N]: NaN where nothing\n"
            "was computed, which is nearly everywhere unless all rows are candidates\n"
            "(method=\"seqcnnslam\"). Errors: SetupError before the first step.");
 
   seqloop::python::add_recordings(module);
+  seqloop::python::add_map_files(module);
 }

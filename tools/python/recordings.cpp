@@ -55,8 +55,10 @@ py::dict columns_of(const program::MatchedDrive& matched) {
 py::dict match(const std::optional<Array>& reference, const Array& query,
                const py::kwargs& settings) {
   Faults faults;
+  const Array& mapped = reference ? *reference : query;
+  const auto rows = static_cast<std::size_t>(mapped.ndim() == 2 ? mapped.shape(0) : 0);
   const MatcherConfig config =
-      config_of(reference ? Use::localise : Use::close_loops, settings, faults);
+      config_of(reference ? Use::localise : Use::close_loops, rows, settings, faults);
   std::optional<files::Matrix> places;
   std::optional<files::Matrix> frames;
   if (reference) {
@@ -162,12 +164,14 @@ files::Matrix matrix(const Array& array, const std::string& name, Difference dif
   return copy;
 }
 
-MatcherConfig config_of(Use use, const py::kwargs& settings, Faults& faults) {
+MatcherConfig config_of(Use use, std::size_t places, const py::kwargs& settings, Faults& faults) {
   program::MatcherSettings matcher;
   program::OptionTable options;
   program::add_matcher_options(options, matcher);
   for (Fault& fault : set_options(options, settings)) faults.push_back(std::move(fault));
-  return resolve(matcher, use, faults);
+  MatcherConfig config = resolve(matcher, use, faults);
+  suit_slice(config, matcher, places);
+  return config;
 }
 
 void add_recordings(py::module_& module) {

@@ -18,8 +18,9 @@ namespace seqloop::python {
 [[nodiscard]] files::Matrix matrix(const Array& array, const std::string& name,
                                    Difference difference);
 
-/// What the settings say; adds what is wrong with them.
-[[nodiscard]] MatcherConfig config_of(Use use, const pybind11::kwargs& settings, Faults& faults);
+/// What the settings say of a map of so many places; adds what is wrong with them.
+[[nodiscard]] MatcherConfig config_of(Use use, std::size_t places, const pybind11::kwargs& settings,
+                                      Faults& faults);
 
 /// match, evaluate, settings: of whole drives.
 void add_recordings(pybind11::module_& module);

@@ -66,6 +66,8 @@ class PictureDescriber {
 
   [[nodiscard]] std::size_t size() const noexcept { return describer_->size(); }
 
+  [[nodiscard]] std::string fingerprint() const { return program::fingerprint(settings_); }
+
   py::array_t<float> describe(const Array& picture) {
     const Image looked_at = image(picture);
     py::array_t<float> descriptor(static_cast<py::ssize_t>(size()));
@@ -129,6 +131,9 @@ PYBIND11_MODULE(_vision, module) {
           [] { return seqloop::python::described(seqloop::program::add_drive_options); },
           "Every setting of a describer, and what it does.")
       .def_property_readonly("size", &PictureDescriber::size, "D, values in a descriptor.")
+      .def_property_readonly("fingerprint", &PictureDescriber::fingerprint,
+                             "What a map in a file remembers of how it was described: all that\n"
+                             "makes descriptors differ. For PlaceMap.open.")
       .def("describe", &PictureDescriber::describe, py::arg("picture"),
            "The descriptor of one picture: float32 [D], of unit length, or zeros where the\n"
            "picture has no feature; patches are 0 to 255 instead.\n\n"

@@ -27,7 +27,10 @@ class SqliteMap : public LastingMap {
     return stored_.capacity(drive);
   }
 
-  void load(PlaceMap& map) override { stored_.load(map); }
+  void load(PlaceMap& map) override {
+    map_ = &map;
+    stored_.load(map);
+  }
 
   void begin(const PlaceMap& map, const MatcherConfig& config, const std::string& method) override {
     map_ = &map;
@@ -50,11 +53,26 @@ class SqliteMap : public LastingMap {
     return writer_ ? writer_->trouble() : std::nullopt;
   }
 
+  [[nodiscard]] std::uint64_t saved() const noexcept override {
+    return writer_ ? writer_->saved() : 0;
+  }
+
+  [[nodiscard]] Seen where(std::uint64_t number) const override {
+    const PlaceOrder& order = map_->order();
+    const std::size_t session = order.session_of_number(number);
+    Seen seen{stored_.name(session), std::nullopt};
+    if (const auto row = order.row_of_number(number)) {
+      const bool running = writer_ && session + 1 == order.sessions();
+      seen.frame = running ? writer_->source_frame(*row) : order.frame(*row);
+    }
+    return seen;
+  }
+
   void add_to(Json& frame) const override {
     for (Json& answer : frame["answers"]) name_place(answer, "match");
     name_place(frame, "match");
     if (!frame["now"].is_null()) name_place(frame["now"], "place");
-    frame["saved"] = writer_ ? writer_->saved() : 0;
+    frame["saved"] = saved();
   }
 
   [[nodiscard]] std::string summary() const override {
@@ -69,14 +87,9 @@ class SqliteMap : public LastingMap {
     json["session"] = nullptr;
     json["session_frame"] = nullptr;
     if (json[key].is_null()) return;
-    const PlaceOrder& order = map_->order();
-    const auto number = json[key].get<std::uint64_t>();
-    const std::size_t session = order.session_of_number(number);
-    json["session"] = stored_.name(session);
-    const auto row = order.row_of_number(number);
-    if (!row) return;
-    const bool running = writer_ && session + 1 == order.sessions();
-    json["session_frame"] = running ? writer_->source_frame(*row) : order.frame(*row);
+    const Seen seen = where(json[key].get<std::uint64_t>());
+    json["session"] = seen.session;
+    if (seen.frame) json["session_frame"] = *seen.frame;
   }
 
   StoredMap stored_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "program/map/map_settings.hpp"
 #include "seqloop/detector.hpp"
@@ -50,6 +51,17 @@ class LastingMap {
 
   /// What there is to say of the disk, once. Never waits.
   [[nodiscard]] virtual std::optional<std::string> trouble() = 0;
+
+  /// Frames of the drive, from the first on, that are on the disk for good. Never waits.
+  [[nodiscard]] virtual std::uint64_t saved() const noexcept = 0;
+
+  /// Where a place was seen.
+  struct Seen {
+    std::string_view session;
+    std::optional<std::uint64_t> frame;  ///< of it, as its source counts; none: forgotten since
+  };
+  /// @param number of a place that the map has or had
+  [[nodiscard]] virtual Seen where(std::uint64_t number) const = 0;
 
   /// Says in what `run` says of a frame how much is saved, and of which session places are.
   virtual void add_to(nlohmann::ordered_json& frame) const = 0;

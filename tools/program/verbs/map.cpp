@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "program/map/exchange.hpp"
+#include "program/map/merge.hpp"
 #include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
@@ -93,17 +94,12 @@ void recover(const MapSettings& settings) {
 }
 
 void merge(const MapSettings& settings) {
-  NewMap out(settings.out);
-  MapFile* map = nullptr;
-  for (std::size_t i = 1; i < settings.words.size(); ++i) {
-    stop_if_interrupted();
-    const MapFile from = MapFile::read_only(settings.words[i]);
-    if (map == nullptr) map = &out.open(from.form());
-    const std::uint64_t added = map->add(from);
-    say("{}: its place 0 is place {}", settings.words[i], added);
+  const std::vector<fs::path> maps(settings.words.begin() + 1, settings.words.end());
+  const std::vector<std::uint64_t> added = merge_maps(maps, settings.out, stop_if_interrupted);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    say("{}: its place 0 is place {}", maps[i].string(), added[i]);
   }
-  const std::vector<sqlite::SessionFacts> sessions = map->sessions();
-  out.commit();
+  const std::vector<sqlite::SessionFacts> sessions = MapFile::read_only(settings.out).sessions();
   say("{}: {} places in {} sessions", settings.out.string(), places_of(sessions), sessions.size());
 }
 

@@ -19,6 +19,14 @@ Frame by frame, as a robot does:
             if answer.gate == "match":
                 print(f"frame {answer.frame} is place {answer.match.place}")
 
+A map that lasts, in the same files as `seqloop run --map`, of many sessions:
+
+    with seqloop.PlaceMap.open("garage.seqloop", describer.size, describer=describer.fingerprint) as places:
+        detector = seqloop.Detector(places)                # step as above; places.where(a place)
+        detector.finish()                                  # all of it is saved
+
+`map_info`, `check_map` and `merge_maps` are for such files as a whole.
+
 Settings are keyword arguments with the names of the program's flags: `seqloop.settings()` lists
 them. What goes wrong is a SetupError, a ValueError that tells every fault at once. Arguments of a
 wrong Python type, such as a string for an array, are TypeErrors.
@@ -29,6 +37,7 @@ probabilities 0 to 1.
 from __future__ import annotations
 
 import dataclasses
+import os
 import typing
 
 import numpy
@@ -45,8 +54,11 @@ if typing.TYPE_CHECKING:
 Floats = numpy.typing.NDArray[numpy.floating[typing.Any]]
 Integers = numpy.typing.NDArray[numpy.int64]
 
-__all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "Match", "Matches", "Measures", "PlaceMap",
-           "Report", "Setting", "SetupError", "Work", "differences", "evaluate", "match", "settings"]
+MapPath = typing.Union[str, "os.PathLike[str]"]
+
+__all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "MapInfo", "Match", "Matches", "Measures",
+           "PlaceMap", "Report", "Session", "Setting", "SetupError", "Work", "check_map", "differences", "evaluate",
+           "map_info", "match", "merge_maps", "settings"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,6 +116,39 @@ class Measures:
     expected_calibration_error: float
     curve: numpy.typing.NDArray[numpy.float64]
     """[P, 2]: recall, precision."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Session:
+    """A drive in a map's file."""
+
+    name: str
+    places: int
+    """Without those that were forgotten."""
+    frames: int
+    """So many, from its first on, are saved for good."""
+    began_ns: int
+    """Nanoseconds since 1970."""
+    settings: str
+
+
+@dataclasses.dataclass(frozen=True)
+class MapInfo:
+    """What a map's file holds: `seqloop map info`."""
+
+    descriptor_size: int
+    """D, values in a descriptor."""
+    form: str
+    """How places are kept; `arithmetic`, `difference` and `standardise` must say the same."""
+    describer: str
+    """What described them, as it was given to `PlaceMap.open`."""
+    sessions: list[Session]
+    """Oldest first."""
+
+    @property
+    def places(self) -> int:
+        """Of all sessions."""
+        return sum(session.places for session in self.sessions)
 
 
 def match(reference: Floats | None, query: Floats, **settings: Setting) -> Matches:
@@ -167,6 +212,30 @@ def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.
         detector.step(descriptor)
         matrix[:, frame] = detector.newest_column()
     return matrix
+
+
+def map_info(file: MapPath) -> MapInfo:
+    """What a map's file holds. Another process may write it meanwhile. Errors: SetupError."""
+    info = _core.map_info(file)
+    sessions = [Session(**session) for session in info.pop("sessions")]
+    return MapInfo(sessions=sessions, **info)
+
+
+def check_map(file: MapPath) -> list[str]:
+    """Everything that is wrong with a map's file, a line each; empty: it is whole. Reads it twice.
+
+    `seqloop map recover` copies what is whole into a new file. Errors: SetupError: it is no map.
+    """
+    return _core.check_map(file)
+
+
+def merge_maps(maps: typing.Sequence[MapPath], out: MapPath) -> list[int]:
+    """Copies all sessions of maps into a new file, which has its name only when it is complete.
+
+    Returns, for each map, what is added to the numbers of its places.
+    Errors: SetupError: `out` exists, the maps are of other forms, damaged. OSError: the disk is full.
+    """
+    return _core.merge_maps(maps, out)
 
 
 def settings() -> dict[str, str]:

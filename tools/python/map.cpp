@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "python/map.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "program/drives/map_builder.hpp"
+#include "program/map/map_settings.hpp"
+#include "program/options/flag_names.hpp"
+#include "program/options/matcher_settings.hpp"
+#include "program/options/verb.hpp"
+#include "python/recordings.hpp"
+#include "seqloop/files/descriptor_source.hpp"
+
+namespace seqloop::python {
+namespace {
+
+namespace py = pybind11;
+
+using Unlocked = py::gil_scoped_release;
+
+std::size_t size_of(std::int64_t value) {
+  return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
+}
+
+void check(Faults& faults, const Capacity& capacity, const MatcherConfig& config) {
+  for (Fault& fault : validate(capacity, config)) {
+    faults.push_back(program::in_flags(std::move(fault)));
+  }
+}
+
+}  // namespace
+
+Map::Map(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
+         const py::kwargs& settings)
+    : Map(in_memory({size_of(places), size_of(descriptor_size)}, close_loops, settings)) {}
+
+Map::Map(Chosen chosen)
+    : config_(chosen.config),
+      method_(std::move(chosen.method)),
+      in_file_(chosen.file != nullptr),
+      map_(config_, chosen.capacity),
+      file_(std::move(chosen.file)) {}
+
+Map::Chosen Map::in_memory(const Capacity& capacity, bool close_loops, const py::kwargs& settings) {
+  Faults faults;
+  const MatcherConfig config =
+      config_of(close_loops ? Use::close_loops : Use::localise, capacity.places, settings, faults);
+  check(faults, capacity, config);
+  program::refuse(std::move(faults));
+  return {config, capacity};
+}
+
+std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t descriptor_size,
+                               std::optional<std::int64_t> places, const std::string& describer,
+                               const py::kwargs& given) {
+  constexpr std::size_t usual_drive = 20'000;
+  Faults faults;
+  program::MapSettings settings;
+  program::MatcherSettings matcher;
+  program::OptionTable options;
+  add_map_options(options, settings);
+  add_matcher_options(options, matcher);
+  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
+  settings.file = file;
+  if (file.empty()) faults.push_back({"map", "its name is empty", "name a file"});
+  check(settings, false, faults);
+  Chosen chosen;
+  chosen.method = matcher.method;
+  chosen.config = resolve(matcher, settings.read_only ? Use::localise : Use::close_loops, faults);
+  // The file is opened last: a missing one is made.
+  const std::size_t drive = places ? size_of(*places) : usual_drive;
+  check(faults, {drive, size_of(descriptor_size)}, chosen.config);
+  program::refuse(std::move(faults));
+  const Unlocked unlocked;
+  chosen.file = program::open_map(settings, chosen.config, size_of(descriptor_size), describer);
+  chosen.capacity = chosen.file->capacity(drive);
+  if (places) {
+    if (chosen.file->places() > drive) {
+      throw SetupError({"max_places",
+                        fmt::format("the map has {} places already", chosen.file->places()),
+                        "raise max_places"});
+    }
+    chosen.capacity.places = drive;
+  }
+  suit_slice(chosen.config, matcher, chosen.capacity.places);
+  std::unique_ptr<Map> map(new Map(std::move(chosen)));
+  map->file_->load(map->map_);
+  return map;
+}
+
+void Map::add_drive(const Array& descriptors) {
+  Faults faults;
+  if (in_file_) {
+    faults.push_back({"map", "it is kept in a file: a detector adds its drive to it",
+                      "step through the drive, or make a PlaceMap without a file"});
+  } else if (config_.use == Use::close_loops) {
+    faults.push_back({"map", "it is for closing loops: it takes its places from the drive",
+                      "leave close_loops out to localise in an earlier drive"});
+  }
+  std::optional<files::Matrix> drive;
+  program::collect(faults, [&] { drive = matrix(descriptors, "descriptors", config_.difference); });
+  if (drive && drive->columns != map_.descriptor_size()) {
+    faults.push_back({"descriptors",
+                      "a row has " + std::to_string(drive->columns) + " values, the map's have " +
+                          std::to_string(map_.descriptor_size()),
+                      "describe all with the same describer"});
+  }
+  program::refuse(std::move(faults));
+  const Unlocked unlocked;
+  const std::scoped_lock lock(mutex_);
+  if (map_.size() != 0) {
+    throw SetupError({"map", "it holds a drive already", "make a map for each drive"});
+  }
+  files::DescriptorSource source(std::move(*drive));
+  program::Progress silent;
+  program::fill_map(map_, source, nullptr, config_, silent);
+}
+
+std::size_t Map::size() {
+  const Unlocked unlocked;
+  const std::scoped_lock lock(mutex_);
+  return map_.size();
+}
+
+program::LastingMap* Map::file() {
+  if (in_file_ && !file_) throw SetupError({"map", "it is closed", "open it again"});
+  return file_.get();
+}
+
+std::pair<std::string, std::optional<std::uint64_t>> Map::where(std::uint64_t place) {
+  const Unlocked unlocked;
+  const std::scoped_lock lock(mutex_);
+  const program::LastingMap* const kept = file();
+  if (kept == nullptr) {
+    throw SetupError({"map", "it is in no file, and has one drive", "the place is its frame"});
+  }
+  if (place >= map_.order().next_number()) {
+    throw SetupError({"place", std::to_string(place) + " is none of the map"});
+  }
+  const program::LastingMap::Seen seen = kept->where(place);
+  return {std::string(seen.session), seen.frame};
+}
+
+std::uint64_t Map::saved() {
+  const Unlocked unlocked;
+  const std::scoped_lock lock(mutex_);
+  const program::LastingMap* const kept = file();
+  if (kept == nullptr) throw SetupError({"map", "it is in no file", "PlaceMap.open"});
+  return kept->saved();
+}
+
+void Map::close() {
+  const Unlocked unlocked;
+  const std::scoped_lock lock(mutex_);
+  file_.reset();
+}
+
+void Map::claim() {
+  static_cast<void>(file());
+  if (config_.use != Use::close_loops) return;
+  if (claimed_) {
+    throw SetupError({"map", "another detector adds its drive to it", "make another map"});
+  }
+  claimed_ = true;
+}
+
+void Map::begin() {
+  if (file_) file_->begin(map_, config_, method_);
+}
+
+}  // namespace seqloop::python

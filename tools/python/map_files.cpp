@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "python/map_files.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program/map/merge.hpp"
+#include "python/bindings.hpp"
+#include "seqloop/sqlite/map_file.hpp"
+
+namespace seqloop::python {
+namespace {
+
+namespace py = pybind11;
+
+using Unlocked = py::gil_scoped_release;
+
+py::dict info(const std::filesystem::path& file) {
+  const sqlite::MapFile map = sqlite::MapFile::read_only(file);
+  const sqlite::MapForm& form = map.form();
+  using namespace py::literals;
+  py::list sessions;
+  for (const sqlite::SessionFacts& session : map.sessions()) {
+    sessions.append(py::dict("name"_a = session.name, "places"_a = session.places,
+                             "frames"_a = session.frames, "began_ns"_a = session.began_ns,
+                             "settings"_a = session.settings));
+  }
+  return py::dict("descriptor_size"_a = form.descriptor_size, "form"_a = form.form,
+                  "describer"_a = form.describer, "sessions"_a = sessions);
+}
+
+std::vector<std::string> check(const std::filesystem::path& file) {
+  const Unlocked unlocked;
+  return sqlite::MapFile::read_only(file).check();
+}
+
+std::vector<std::uint64_t> merge(const std::vector<std::filesystem::path>& maps,
+                                 const std::filesystem::path& out) {
+  const Unlocked unlocked;
+  return program::merge_maps(maps, out, look_for_interruption);
+}
+
+}  // namespace
+
+void add_map_files(py::module_& module) {
+  // What was in the file stays as it was: a disk is full, or gone.
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const sqlite::SaveError& error) {
+      PyErr_SetString(PyExc_OSError, error.what());
+    }
+  });
+  module.def("map_info", &info, py::arg("file"));
+  module.def("check_map", &check, py::arg("file"));
+  module.def("merge_maps", &merge, py::arg("maps"), py::arg("out"));
+}
+
+}  // namespace seqloop::python
