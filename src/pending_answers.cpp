@@ -260,7 +260,9 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
         const auto offsets = trajectories_->offsets(line->line);
         const bool by_line = whole && !stands;
         const std::size_t from = by_line ? line->row : at(frame).row;
-        const std::int64_t there = by_line ? offsets[trajectories_->centre() + frame - other] : 0;
+        const std::int64_t there =
+            by_line ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)]
+                    : 0;
         return {number(from, there), static_cast<float>(line->score),
                 static_cast<float>(line->uniqueness), trajectories_->velocity(line->line),
                 number(from, offsets.back())};
