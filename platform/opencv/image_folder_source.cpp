@@ -38,6 +38,14 @@ bool is_picture(const fs::directory_entry& entry) {
   return type == fs::file_type::regular || type == fs::file_type::not_found;
 }
 
+/// The first few of these names.
+std::string some(const std::vector<std::string>& names) {
+  std::string line;
+  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i)
+    line += (i == 0 ? "" : ", ") + names[i];
+  return line + (names.size() > most_named ? ", ..." : "");
+}
+
 Listing list_folder(const fs::path& folder) {
   const std::string name = folder.string();
   std::error_code error;
@@ -51,12 +59,13 @@ Listing list_folder(const fs::path& folder) {
         .push_back(entries->path().filename().string());
   if (error)
     throw SetupError(Fault{name, "cannot be read: " + error.message(), "check its permissions"});
-  if (listing.pictures.empty())
-    throw SetupError(
-        {name, "holds no pictures (" + std::to_string(listing.others.size()) + " other files)",
-         "name a folder with jpg, png, bmp, pgm, ppm, tif or webp files"});
   std::sort(listing.pictures.begin(), listing.pictures.end(), natural_less);
   std::sort(listing.others.begin(), listing.others.end(), natural_less);
+  if (listing.pictures.empty())
+    throw SetupError(
+        {name,
+         "holds no pictures" + (listing.others.empty() ? "" : ", but " + some(listing.others)),
+         "name a folder with jpg, png, bmp, pgm, ppm, tif or webp files"});
   return listing;
 }
 
@@ -112,11 +121,9 @@ class ImageFolderSource::Impl {
   [[nodiscard]] std::vector<std::string> notes() const {
     std::vector<std::string> lines;
     if (const auto& others = listing_.others; !others.empty()) {
-      std::string line = std::to_string(others.size()) +
-                         (others.size() == 1 ? " other file ignored: " : " other files ignored: ");
-      for (std::size_t i = 0; i < std::min(others.size(), most_named); ++i)
-        line += (i == 0 ? "" : ", ") + others[i];
-      lines.push_back(line + (others.size() > most_named ? ", ..." : ""));
+      lines.push_back(std::to_string(others.size()) +
+                      (others.size() == 1 ? " other file ignored: " : " other files ignored: ") +
+                      some(others));
     }
     if (odd_sizes_ > 0)
       lines.push_back(std::to_string(odd_sizes_) + " of " + std::to_string(next_) +

@@ -99,6 +99,9 @@ TEST_F(BadInput, Numbers) {
   expect_match_refused(drives + "--standardise maybe", {"standardise", "'maybe'", "on"});
   expect_refused("match --method a-seqcnslam --out m.csv " + drives,
                  {"did you mean 'a-seqcnnslam'"});
+  expect_refused("match --method oseqcnnslam --out m.csv " + drives,
+                 {"did you mean 'o-seqcnnslam'"});
+  expect_match_refused(drives + "other", {"other: stands after no flag"});
   expect_match_refused(drives + "--enhance on --rwindow 1", {"rwindow: 1", "enhance"});
   expect_match_refused("--query good.npy --ds 4 --enhance on --exclude 5",
                        {"exclude: 5", "rwindow"});

@@ -103,7 +103,8 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
             : sub->add_option("--" + option.name, values, in_lines(option.help))
                   ->type_name(value_name(option.kind))
                   ->expected(option.may_be_bare ? 0 : 1, 1)
-                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                  ->allow_extra_args(false);
     // No name: CLI11 does not show it.
     flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }
@@ -135,9 +136,13 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
     }
     const std::string name = extra.substr(std::min(extra.find_first_not_of('-'), extra.size()));
     const std::string meant = nearest(name.substr(0, name.find('=')), own_names);
-    faults.push_back(
-        {extra, "not known to '" + verb.name + "'",
-         meant.empty() ? "see seqloop " + verb.name + " --help" : "did you mean --" + meant + "?"});
+    const std::string help = "see seqloop " + verb.name + " --help";
+    if (!flag && meant.empty()) {
+      faults.push_back({extra, "stands after no flag", "say what it is, as in --source; " + help});
+    } else {
+      faults.push_back({extra, "not known to '" + verb.name + "'",
+                        meant.empty() ? help : "did you mean --" + meant + "?"});
+    }
   }
   if (verb.words) verb.words(std::move(words));
   std::set<std::string> set_already;

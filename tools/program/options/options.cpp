@@ -176,7 +176,10 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   std::size_t fewest = std::min(most_edits, name.size() / 3 + 1) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edits(name, candidate);
-    if (distance >= fewest) continue;
+    // Of two that are as near, the one that begins alike.
+    const bool nearer = distance < fewest ||
+                        (distance == fewest && !best.empty() && candidate.front() == name.front());
+    if (!nearer) continue;
     fewest = distance;
     best = candidate;
   }
