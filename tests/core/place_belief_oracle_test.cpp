@@ -55,7 +55,7 @@ class NaiveBelief {
       const DescriptorRows& rows = view.queries->rows();
       return rows.look_closely(rows, view.queries->row_of(a), view.queries->row_of(b)) / 1024.0;
     };
-    const std::size_t t = view.newest;
+    const auto t = static_cast<std::size_t>(view.newest);
     // 6.1
     std::vector<double> shares;
     for (const std::uint32_t bits : view.seen->scanned().bits) shares.push_back(bits / 256.0);
