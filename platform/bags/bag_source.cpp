@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bags/messages.hpp"
+#include "ros/pictures.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/fixed_text.hpp"
@@ -27,7 +27,7 @@ std::string list(const std::vector<Topic>& topics) {
 const Topic& choose_topic(const BagFacts& facts, const std::string& path, const std::string& name) {
   std::vector<Topic> pictures;
   std::ranges::copy_if(facts.topics, std::back_inserter(pictures), [](const Topic& topic) {
-    return picture_type(topic.type) != PictureType::none;
+    return ros::picture_type(topic.type) != ros::PictureType::none;
   });
   if (name.empty() && pictures.size() > 1)
     throw SetupError(
@@ -43,7 +43,7 @@ const Topic& choose_topic(const BagFacts& facts, const std::string& path, const 
   if (found == facts.topics.end())
     throw SetupError(Fault{path, "has no topic " + name + "; with pictures: " + list(pictures),
                            "choose one: --topic"});
-  if (picture_type(found->type) == PictureType::none)
+  if (ros::picture_type(found->type) == ros::PictureType::none)
     throw SetupError(
         Fault{path, name + " is " + found->type + ", no pictures; with pictures: " + list(pictures),
               "choose one: --topic"});
@@ -62,7 +62,7 @@ class BagSource::Impl {
        std::unique_ptr<PictureDecoder> decoder)
       : bag_(open_bag(path)),
         topic_(choose_topic(bag_->facts(), path.string(), topic)),
-        type_(picture_type(topic_.type)),
+        type_(ros::picture_type(topic_.type)),
         decoder_(std::move(decoder)) {
     look_at_first();
     bag_->choose(topic_.name);
@@ -107,13 +107,13 @@ class BagSource::Impl {
     Read read = bag_->next(message);
     while (read == Read::damaged) read = bag_->next(message);
     if (read == Read::end) return;
-    const PictureMessage first = read_picture(type_, message.bytes, fault_);
+    const ros::PictureMessage first = ros::read_picture(type_, message.bytes, fault_);
     stamped_ = first.stamp_ns != 0;
     start_ns_ = stamped_ ? first.stamp_ns : message.time_ns;
   }
 
   [[nodiscard]] Grab take(const Message& message, Frame& frame) {
-    const PictureMessage read = read_picture(type_, message.bytes, fault_);
+    const ros::PictureMessage read = ros::read_picture(type_, message.bytes, fault_);
     const std::int64_t now = stamped_ ? read.stamp_ns : message.time_ns;
     // Seconds and the rest by themselves, so that no stamp is too large; together they are exact.
     const std::int64_t whole = now / second - start_ns_ / second;
@@ -141,7 +141,7 @@ class BagSource::Impl {
 
   std::unique_ptr<Bag> bag_;
   Topic topic_;
-  PictureType type_;
+  ros::PictureType type_;
   std::unique_ptr<PictureDecoder> decoder_;
   FixedText fault_;
   bool stamped_ = false;

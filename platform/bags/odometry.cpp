@@ -5,7 +5,6 @@
 #include <memory>
 #include <string_view>
 
-#include "bags/cdr.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/fault.hpp"
 
@@ -16,22 +15,10 @@ bool is_odometry(std::string_view type) {
   return type == "nav_msgs/msg/Odometry" || type == "nav_msgs/Odometry";
 }
 
-OdometryPose read_pose(CdrReader& cdr) {
-  constexpr std::int64_t second = 1'000'000'000;
-  OdometryPose pose;
-  pose.stamp_ns = cdr.number<std::int32_t>() * second;
-  pose.stamp_ns += cdr.number<std::uint32_t>();
-  static_cast<void>(cdr.text());  // frame_id
-  static_cast<void>(cdr.text());  // child_frame_id
-  for (double& value : pose.position) value = cdr.number<double>();
-  for (double& value : pose.orientation) value = cdr.number<double>();
-  return pose;
-}
-
 }  // namespace
 
-std::vector<OdometryPose> read_odometry(const std::filesystem::path& path,
-                                        const std::string& name) {
+std::vector<ros::OdometryPose> read_odometry(const std::filesystem::path& path,
+                                             const std::string& name) {
   const std::unique_ptr<Bag> bag = open_bag(path);
   const std::vector<Topic>& topics = bag->facts().topics;
   const auto topic = std::ranges::find(topics, name, &Topic::name);
@@ -42,14 +29,12 @@ std::vector<OdometryPose> read_odometry(const std::filesystem::path& path,
     throw SetupError(Fault{path.string(), "has no topic " + name + " of nav_msgs/msg/Odometry",
                            others.empty() ? "give a file of poses (TUM)" : "there is " + others});
   }
-  std::vector<OdometryPose> poses;
+  std::vector<ros::OdometryPose> poses;
   bag->choose(name);
   Message message;
   for (Read read = bag->next(message); read != Read::end; read = bag->next(message)) {
     if (read == Read::damaged) continue;
-    CdrReader cdr(message.bytes);
-    const OdometryPose pose = read_pose(cdr);
-    if (cdr.fault().empty()) poses.push_back(pose);
+    if (const auto pose = ros::read_odometry(message.bytes)) poses.push_back(*pose);
   }
   return poses;
 }

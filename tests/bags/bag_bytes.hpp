@@ -54,6 +54,13 @@ class Cdr {
   ByteVector bytes_;
 };
 
+inline ByteVector odometry_message(std::int64_t stamp_ns) {
+  Cdr cdr;
+  cdr.header(stamp_ns, "odom").text("base_link");
+  for (int i = 0; i < 7 + 36 + 6 + 36; ++i) cdr.put(i == 6 ? 1.0 : 0.0);
+  return cdr.bytes();
+}
+
 inline ByteVector image_message(std::int64_t stamp_ns, std::uint32_t width, std::uint32_t height,
                                 std::string_view encoding, std::uint32_t step,
                                 std::span<const std::uint8_t> data, bool little = true,

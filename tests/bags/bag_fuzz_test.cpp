@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <random>
@@ -10,10 +11,11 @@
 #include "bags/bag_bytes.hpp"
 #include "bags/db3_bag.hpp"
 #include "bags/mcap_bag.hpp"
-#include "bags/messages.hpp"
 #include "bags/packed.hpp"
 #include "guarded_bytes.hpp"
+#include "ros/pictures.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/ros/odometry.hpp"
 #include "temporary_folder.hpp"
 #if SEQLOOP_SQLITE
 #include "bags/db3_file.hpp"
@@ -106,15 +108,18 @@ test::McapBytes records() {
 TEST(BagFuzz, Cdr) {
   const test::ByteVector pixels(12, 7);
   fuzz({test::image_message(1'000'000'001, 3, 4, "mono8", 3, pixels),
-        test::image_message(1'000'000'001, 3, 4, "mono8", 3, pixels, false)},
+        test::image_message(1'000'000'001, 3, 4, "mono8", 3, pixels, false),
+        test::compressed_message(1'000'000'001, "jpeg", std::array<std::uint8_t, 3>{255, 216, 255}),
+        test::odometry_message(1'000'000'001)},
        1, [](std::span<const std::uint8_t> bytes) {
          FixedText fault;
-         static_cast<void>(bags::read_picture(bags::PictureType::compressed, bytes, fault));
-         const auto read = bags::read_picture(bags::PictureType::image, bytes, fault);
+         static_cast<void>(ros::read_picture(ros::PictureType::compressed, bytes, fault));
+         const auto read = ros::read_picture(ros::PictureType::image, bytes, fault);
          volatile std::uint8_t byte = 0;
          for (const std::uint8_t one : read.picture.bytes) byte = one;
          static_cast<void>(byte);
-         return fault.empty();
+         const bool pose = ros::read_odometry(bytes).has_value();
+         return fault.empty() || pose;
        });
 }
 

@@ -7,11 +7,14 @@
 #include <span>
 #include <string>
 
+#include "bags/bag_bytes.hpp"
 #include "files/npy_header.hpp"
 #include "guarded_bytes.hpp"
 #include "platform/jpegs.hpp"
+#include "ros/pictures.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/raw_decoder.hpp"
+#include "seqloop/ros/odometry.hpp"
 #include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 namespace seqloop {
@@ -85,14 +88,31 @@ void read_npy(Bytes bytes) {
   }
 }
 
+/// A message of ROS 2, and the picture that it says it holds.
+void read_message(Bytes bytes) {
+  static const test::Bytes pixels(3 * 4 * 2, 7);
+  static const test::Bytes good = test::image_message(1, 4, 2, "rgb8", 12, pixels);
+  static opencv::RawDecoder decoder(false);
+  const Bytes message = guarded(overlaid(good, bytes));
+  static_cast<void>(ros::read_odometry(message));
+  for (const auto type : {ros::PictureType::image, ros::PictureType::compressed}) {
+    FixedText fault;
+    const RawPicture picture = ros::read_picture(type, message, fault).picture;
+    Image image;
+    const bool raw = fault.empty() && type == ros::PictureType::image;
+    if (raw && decoder.decode(picture, image).empty()) read_every_pixel(image);
+  }
+}
+
 }  // namespace
 }  // namespace seqloop
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::span bytes(data + 1, size - 1);
-  if (data[0] % 3 == 0) seqloop::decode_raw(bytes);
-  if (data[0] % 3 == 1) seqloop::decode_mjpg(bytes);
-  if (data[0] % 3 == 2) seqloop::read_npy(bytes);
+  if (data[0] % 4 == 0) seqloop::decode_raw(bytes);
+  if (data[0] % 4 == 1) seqloop::decode_mjpg(bytes);
+  if (data[0] % 4 == 2) seqloop::read_npy(bytes);
+  if (data[0] % 4 == 3) seqloop::read_message(bytes);
   return 0;
 }

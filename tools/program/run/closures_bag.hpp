@@ -17,12 +17,12 @@ class ClosuresBag {
   /// Throws SetupError as files::OutputFile does.
   explicit ClosuresBag(const std::filesystem::path& path);
 
+  /// Adds those that are accepted. @param times of the drive's frames
   /// @param start_ns when second 0 of the drive was, since 1970
   /// @param own_places whether places are frames of the drive itself
-  void begin(std::int64_t start_ns, bool own_places) noexcept;
-
-  /// Adds those that are accepted. @param times of the drive's frames. Throws files::IoError.
-  void add(std::span<const Answer> answers, const FrameTimes& times);
+  /// Throws files::IoError.
+  void add(std::span<const Answer> answers, const FrameTimes& times, std::int64_t start_ns,
+           bool own_places);
 
   /// Throws files::IoError.
   void commit();
@@ -30,8 +30,6 @@ class ClosuresBag {
  private:
   files::OutputFile out_;
   bags::LoopBag bag_;
-  std::int64_t start_ns_ = 0;
-  bool own_places_ = true;
 };
 
 }  // namespace seqloop::program

@@ -20,6 +20,11 @@ class FrameTimes {
     return times_.empty() ? 0.0 : times_.back().second;
   }
 
+  /// All of them: frame, time.
+  [[nodiscard]] const std::vector<std::pair<std::uint64_t, double>>& all() const noexcept {
+    return times_;
+  }
+
   /// @return nothing for a frame that never came
   [[nodiscard]] std::optional<double> at(std::uint64_t frame) const noexcept {
     const auto found = std::ranges::lower_bound(times_, frame, {}, &Entry::first);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/loop_outputs.hpp"
 
-#include "program/drives/drives.hpp"
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "program/options/verb.hpp"
+#include "program/run/closure.hpp"
 
 namespace seqloop::program {
 
@@ -10,13 +14,14 @@ void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings)
   options.path("out-bag", Access::writes, settings.bag,
                "accepted loop closures as a bag of ROS 2 (.mcap) [none]");
   options.section("Pose graph", Shown::in_help_all);
-  options.add({"odometry", ValueKind::text,
-               "where the robot believed to be: a file of poses (TUM), or a topic of the source's "
-               "bag [none]",
-               [&settings](std::string_view value) { settings.odometry = value; },
-               [&settings] {
-                 return std::vector<FileUse>{{"odometry", Access::reads, settings.odometry}};
-               }});
+  options.add(
+      {"odometry", ValueKind::text,
+       "where the robot believed to be: a file of poses (TUM), a topic of the source's bag or, "
+       "of a live source, of ROS 2 [none]",
+       [&settings](std::string_view value) { settings.odometry = value; },
+       [&settings] {
+         return std::vector<FileUse>{{"odometry", Access::reads, settings.odometry}};
+       }});
   options.path("pose-graph", Access::writes, settings.pose_graph,
                "odometry and loops for an optimiser (.g2o) [none]");
   options.path("trajectory", Access::writes, settings.trajectory,
@@ -48,17 +53,26 @@ LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, Fa
   }
 }
 
-void LoopOutputs::begin(const LoopOutputSettings& settings, const std::filesystem::path& source,
-                        const FrameSource* recording, std::size_t sequence) {
-  const std::int64_t start = start_ns(recording);
-  if (bag_) bag_->begin(start, own_places_);
+bool listens_to_odometry(const LoopOutputSettings& settings, bool live) {
+  std::error_code error;
+  return live && settings.odometry.starts_with('/') &&
+         !std::filesystem::exists(settings.odometry, error);
+}
+
+void LoopOutputs::begin(const LoopOutputSettings& settings, LoopDrive drive) {
+  drive_ = std::move(drive);
   if (!graph_) return;
-  if (recording == nullptr) {
-    throw SetupError({"odometry", "a camera's cannot be read",
-                      "record camera and odometry, and give the bag as --source"});
+  if (drive_.odometry) {
+    topic_ = settings.odometry;
+    return;
   }
-  graph_->begin(read_odometry(settings.odometry, source, start), static_cast<double>(start) * 1e-9,
-                sequence);
+  if (drive_.recording == nullptr) {
+    throw SetupError({"odometry", "a camera's cannot be read from a file while it drives",
+                      "give a topic of ROS 2, or record the drive and give the bag as --source"});
+  }
+  const std::int64_t start = drive_.start_ns();
+  graph_->begin(read_odometry(settings.odometry, drive_.source, start),
+                static_cast<double>(start) * 1e-9, drive_.sequence);
 }
 
 void LoopOutputs::add(const ProcessedFrame& processed) {
@@ -66,14 +80,28 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
   const FrameReport& report = processed.report;
   if (report.gate != Gate::no_frame) {
     times_.add(report.newest, processed.frame.time_s);
-    if (graph_) graph_->add(report.newest, processed.frame.time_s);
+    if (graph_ && topic_.empty()) graph_->add(report.newest, processed.frame.time_s);
   }
   add(report.answers);
 }
 
 void LoopOutputs::add(std::span<const Answer> answers) {
-  if (bag_) bag_->add(answers, times_);
-  if (graph_) graph_->add(answers);
+  if (bag_) bag_->add(answers, times_, drive_.start_ns(), own_places_);
+  if (!graph_) return;
+  if (topic_.empty()) {
+    graph_->add(answers);
+  } else {
+    std::ranges::copy_if(answers, std::back_inserter(loops_), closes_loop);
+  }
+}
+
+void LoopOutputs::end() {
+  if (topic_.empty()) return;
+  const std::int64_t start = drive_.start_ns();
+  graph_->begin(odometry_of(drive_.odometry(), topic_, start), static_cast<double>(start) * 1e-9,
+                drive_.sequence);
+  for (const auto& [frame, time_s] : times_.all()) graph_->add(frame, time_s);
+  graph_->add(loops_);
 }
 
 std::vector<std::string> LoopOutputs::notes() const {

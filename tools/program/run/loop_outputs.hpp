@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +15,7 @@
 #include "program/run/pose_graph.hpp"
 #include "seqloop/frame_source.hpp"
 #include "seqloop/pipeline.hpp"
+#include "seqloop/ros/odometry.hpp"
 
 namespace seqloop::program {
 
@@ -24,9 +27,23 @@ struct LoopOutputSettings {
   std::filesystem::path trajectory;
 };
 
+/// Whether `--odometry` names a topic of ROS 2 that is to be listened to.
+/// @param live whether the drive comes from a camera or a topic
+[[nodiscard]] bool listens_to_odometry(const LoopOutputSettings& settings, bool live);
+
 /// Flags `--out-bag`, `--odometry`, `--pose-graph`, `--trajectory`.
 /// @param settings lives as long as the table
 void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings);
+
+/// What the outputs must know of a drive.
+struct LoopDrive {
+  std::filesystem::path source = {};
+  const FrameSource* recording = nullptr;       ///< null: it comes live
+  std::function<std::int64_t()> start_ns = {};  ///< as RunSetup's
+  std::size_t sequence = 1;                     ///< frames of a window: ds + 1
+  /// Of a live drive: the odometry that has come; none where none is asked for.
+  std::function<std::vector<ros::OdometryPose>()> odometry = {};
+};
 
 /// Takes a run's accepted answers, and writes what is made of them. Nothing, unless asked for.
 class LoopOutputs {
@@ -35,21 +52,25 @@ class LoopOutputs {
   /// @param own_places whether places are frames of the drive itself
   LoopOutputs(const LoopOutputSettings& settings, bool own_places, Faults& faults);
 
-  /// Reads the odometry. @param recording null: a camera   @param sequence ds + 1
-  /// Throws SetupError.
-  void begin(const LoopOutputSettings& settings, const std::filesystem::path& source,
-             const FrameSource* recording, std::size_t sequence);
+  /// Reads the odometry of a recording. Throws SetupError.
+  void begin(const LoopOutputSettings& settings, LoopDrive drive);
 
   /// Throw files::IoError.
   void add(const ProcessedFrame& processed);
   void add(std::span<const Answer> answers);
   void commit();
 
-  /// What a person should know, one line each; complete before `commit`.
+  /// All answers are there: takes the odometry that has come meanwhile. Throws SetupError.
+  void end();
+
+  /// What a person should know, one line each; complete after `end`.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
   bool own_places_;
+  LoopDrive drive_;
+  std::string topic_;          // of odometry that comes while the drive goes on
+  std::vector<Answer> loops_;  // that wait for it
   FrameTimes times_;
   std::unique_ptr<ClosuresBag> bag_;
   std::unique_ptr<PoseGraph> graph_;

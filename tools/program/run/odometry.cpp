@@ -33,10 +33,9 @@ bool take_numbers(std::string_view line, Line& numbers) {
   return std::find_if_not(at, end, is_blank) == end;
 }
 
-std::vector<Sample> samples_of(const std::vector<bags::OdometryPose>& poses,
-                               std::int64_t start_ns) {
+std::vector<Sample> samples_of(const std::vector<ros::OdometryPose>& poses, std::int64_t start_ns) {
   std::vector<Sample> samples;
-  for (const bags::OdometryPose& pose : poses) {
+  for (const ros::OdometryPose& pose : poses) {
     Sample sample{static_cast<double>(pose.stamp_ns - start_ns) * 1e-9,
                   {pose.position, pose.orientation}};
     const bool finite =
@@ -98,16 +97,21 @@ Odometry parse_tum(const std::string& text, const std::string& name, double star
   return Odometry(std::move(samples));
 }
 
+Odometry odometry_of(const std::vector<ros::OdometryPose>& poses, const std::string& topic,
+                     std::int64_t start_ns) {
+  std::vector<Sample> samples = samples_of(poses, start_ns);
+  if (samples.size() < 2)
+    throw SetupError({"odometry", topic + " holds fewer than two poses whose times rise"});
+  Odometry odometry(std::move(samples));
+  check(odometry, topic);
+  return odometry;
+}
+
 Odometry read_odometry(const std::string& what, const std::filesystem::path& source,
                        std::int64_t start_ns) {
   std::error_code error;
   if (what.starts_with('/') && bags::is_bag(source) && !std::filesystem::exists(what, error)) {
-    std::vector<Sample> samples = samples_of(bags::read_odometry(source, what), start_ns);
-    if (samples.size() < 2)
-      throw SetupError({"odometry", what + " holds fewer than two poses whose times rise"});
-    Odometry odometry(std::move(samples));
-    check(odometry, what);
-    return odometry;
+    return odometry_of(bags::read_odometry(source, what), what, start_ns);
   }
   Odometry odometry = parse_tum(files::read_text(what), what, static_cast<double>(start_ns) * 1e-9);
   check(odometry, what);

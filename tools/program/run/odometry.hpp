@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program/run/pose.hpp"
+#include "seqloop/ros/odometry.hpp"
 
 namespace seqloop::program {
 
@@ -36,6 +37,11 @@ class Odometry {
 /// @param start_s what the file's clock said at the drive's second 0
 /// Throws SetupError: a line that is none, times that do not rise, fewer than two.
 [[nodiscard]] Odometry parse_tum(const std::string& text, const std::string& name, double start_s);
+
+/// What a topic said. @param start_ns when the drive's second 0 was
+/// Throws SetupError: fewer than two poses whose times rise, or the times of another clock.
+[[nodiscard]] Odometry odometry_of(const std::vector<ros::OdometryPose>& poses,
+                                   const std::string& topic, std::int64_t start_ns);
 
 /// Reads a topic of the drive's own bag, or a file. @param what names one or the other
 /// @param source the drive   @param start_ns when its second 0 was; 0: a file counts from there

@@ -69,19 +69,29 @@ void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) 
   if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
 }
 
+bool is_live(const std::filesystem::path& source) { return is_camera(source) || is_topic(source); }
+
 void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
                  Clock& clock, Faults& faults) {
-  if (!is_camera(settings.source)) {
+  if (!is_live(settings.source)) {
     collect(faults, [&] { setup.recording = open_drive(settings.source, "source", drive); });
     return;
   }
+  const bool topic = is_topic(settings.source);
   if (!settings.pictures.empty()) {
     faults.push_back({"pictures", "a camera cannot be looked at again",
                       "record the drive and give the recording, or leave --pictures out"});
   }
   // Without a describer there is a fault already, and nothing to choose a mode for.
-  if (!setup.describer) return;
+  if (!setup.describer || (topic && !setup.ros)) return;
   collect(faults, [&] {
+    if (topic) {
+      LiveTopic opened = open_topic(settings.source, setup.ros, drive.fps, *setup.describer,
+                                    settings.real_time, clock);
+      setup.live = std::move(opened.source);
+      setup.start_ns = std::move(opened.start_ns);
+      return;
+    }
     LiveCamera camera = open_camera(settings.source, settings.camera, drive.fps, *setup.describer,
                                     settings.real_time, clock);
     setup.live = std::move(camera.source);
@@ -113,7 +123,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     faults.push_back({"serve-token", "nothing is served", "add --serve, or leave it out"});
   }
   if (!(settings.give_up_s >= 0.0)) faults.push_back({"give-up-s", "it must be 0 (never) or more"});
-  if (settings.pace == Pace::live && !settings.pictures.empty() && !is_camera(settings.source)) {
+  if (settings.pace == Pace::live && !settings.pictures.empty() && !is_live(settings.source)) {
     faults.push_back({"pictures", "at live pace frames may be missing from them",
                       "leave --pace live or --pictures out"});
   }
@@ -131,6 +141,14 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   }
   if (given) {
     collect(faults, [&] { setup.reference = open_drive(settings.reference, "reference", drive); });
+  }
+  const bool live_odometry = listens_to_odometry(settings.loops, is_live(settings.source));
+  std::function<std::vector<ros::OdometryPose>()> odometry;
+  if (settings.ros || live_odometry || is_topic(settings.source)) {
+    collect(faults, [&] {
+      setup.ros = join_ros();
+      if (live_odometry) odometry = open_odometry(settings.loops.odometry, setup.ros);
+    });
   }
   open_source(setup, settings, drive, clock, faults);
   refuse(faults);
@@ -157,8 +175,11 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     check_length(faults, config, *frames, setup.places);
   }
   refuse(std::move(faults));
-  setup.loops->begin(settings.loops, settings.source, setup.recording.get(),
-                     setup.config.sequence_length + 1);
+  if (!setup.start_ns) {
+    setup.start_ns = [start = start_ns(setup.recording.get())] { return start; };
+  }
+  setup.loops->begin(settings.loops, {settings.source, setup.recording.get(), setup.start_ns,
+                                      setup.config.sequence_length + 1, std::move(odometry)});
   return setup;
 }
 

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "program/drives/drives.hpp"
+#include "program/drives/live_topic.hpp"
 #include "program/map/lasting_map.hpp"
 #include "program/options/camera_options.hpp"
 #include "program/options/loop_options.hpp"
@@ -45,6 +47,7 @@ struct RunSettings {
   LoopSettings loop;
   RealTimeSettings real_time;
   ServeSettings serve;
+  bool ros = false;  ///< whether answers are published
 };
 
 /// Everything that a run needs, opened and checked.
@@ -53,9 +56,12 @@ struct RunSetup {
   Budget budget;
   OverloadRule overload;
   std::unique_ptr<Describer> describer;    ///< none when nothing has to be described
-  std::unique_ptr<FrameSource> recording;  ///< none when the source is a camera
+  std::shared_ptr<dds::Participant> ros;   ///< none unless something of ROS 2 is asked for
+  std::unique_ptr<FrameSource> recording;  ///< none when the source is a camera or a topic
   std::unique_ptr<live::LiveSource> live;  ///< a camera, or the recording at its own pace
-  std::string capture;                     ///< the camera and its mode; empty for recordings
+  std::string capture;                     ///< the camera and its mode; empty for others
+  /// When the drive's second 0 was, in nanoseconds since 1970; of a topic, once a frame has come.
+  std::function<std::int64_t()> start_ns;
   std::unique_ptr<FrameSource> reference;  ///< none when loops are closed
   std::unique_ptr<LastingMap> map;         ///< none unless asked for
   std::unique_ptr<files::OutputFile> out;

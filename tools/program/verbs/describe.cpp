@@ -6,6 +6,7 @@
 #include "program/drives/describe_drive.hpp"
 #include "program/drives/drives.hpp"
 #include "program/drives/live_camera.hpp"
+#include "program/drives/live_topic.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
@@ -27,7 +28,8 @@ struct DescribeSettings {
 void describe(const DescribeSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
-  const bool camera = is_camera(settings.source);
+  const bool topic = is_topic(settings.source);
+  const bool live = topic || is_camera(settings.source);
   std::unique_ptr<Describer> describer;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<files::NpyWriter> out;
@@ -35,7 +37,7 @@ void describe(const DescribeSettings& settings, Faults faults) {
   if (is_described(settings.source)) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
-  } else if (!camera) {
+  } else if (!live) {
     collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
   }
   if (settings.out.empty()) {
@@ -45,7 +47,10 @@ void describe(const DescribeSettings& settings, Faults faults) {
     collect(faults, [&] { out = std::make_unique<files::NpyWriter>(settings.out, size); });
   }
   refuse(std::move(faults));
-  if (camera) {
+  if (topic) {
+    source =
+        open_topic(settings.source, join_ros(), settings.drive.fps, *describer, {}, clock).source;
+  } else if (live) {
     LiveCamera opened =
         open_camera(settings.source, settings.camera, settings.drive.fps, *describer, {}, clock);
     say("{}: {}", settings.source.string(), opened.mode);
@@ -53,10 +58,9 @@ void describe(const DescribeSettings& settings, Faults faults) {
   }
 
   Progress progress("describing", source->frame_count());
-  const DescribedCount count =
-      describe_drive(settings.source.string(), *source, *describer,
-                     [&out](std::span<const float> row) { out->append(row); }, progress,
-                     {settings.frames, camera});
+  const DescribedCount count = describe_drive(
+      settings.source.string(), *source, *describer,
+      [&out](std::span<const float> row) { out->append(row); }, progress, {settings.frames, live});
   out->commit();
   say("{} frames of {} values in {}", count.rows, describer->size(), settings.out.string());
   if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
@@ -75,8 +79,10 @@ Verb describe_verb() {
         describe(*settings, std::move(faults));
       }};
   verb.options.section("Task");
-  verb.options.path("source", Access::reads, settings->source,
-                    "camera (/dev/video0, until interrupted), image folder, video file or bag");
+  verb.options.path(
+      "source", Access::reads, settings->source,
+      "camera (/dev/video0) or topic of ROS 2 (ros:/camera), until interrupted; image "
+      "folder, video file or bag");
   verb.options.path("out", Access::writes, settings->out,
                     "descriptors: float32 [N, D], .npy; unit L2, but patches 0..255");
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <functional>
 #include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -26,6 +25,7 @@
 #include "program/run/source_numbers.hpp"
 #include "program/run/trouble_log.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "program/watch/ros_answers.hpp"
 #include "program/watch/serving.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
@@ -110,13 +110,19 @@ void run(const RunSettings& settings, Faults faults) {
                            setup.capture,
                            {}};
   const std::unique_ptr<Serving> serving = open_serving(settings, setup, conditions);
+  std::unique_ptr<RosAnswers> ros;
+  if (settings.ros) {
+    ros = std::make_unique<RosAnswers>(setup.ros, setup.start_ns, setup.own_places);
+  }
 
   // Start-up: the map, then every path once, before the first frame counts.
   PlaceMap map = with_room(setup, [&] { return PlaceMap(setup.config, setup.capacity()); });
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
-    std::function<void(const Frame&)> look;
-    if (serving) look = [&](const Frame& frame) { serving->add_place(frame.image, frame.index); };
+    const auto look = [&](const Frame& frame) {
+      if (serving) serving->add_place(frame.image, frame.index);
+      if (ros) ros->add_place(frame.image, frame.index);
+    };
     const std::size_t blank_places =
         fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping, look);
     tell_notes(settings.reference, *setup.reference);
@@ -171,6 +177,7 @@ void run(const RunSettings& settings, Faults faults) {
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
     if (serving) serving->watch().publish(*processed, state, summary, map.size(), clock.now());
+    if (ros) ros->publish(*processed, state, summary, map.size(), clock.now());
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     attempt([&] { lines.add(*processed, state); });
@@ -208,13 +215,15 @@ void run(const RunSettings& settings, Faults faults) {
   }
   const std::span<const Answer> last = numbers.rename(rest);
   if (serving) serving->watch().publish(last);
+  if (ros) ros->publish(last);
   // The answers first: a driver that hangs may keep the capture thread from ending.
   if (!unwritten) attempt([&] { lines.end(last); });
   attempt([&] { setup.loops->add(last); });
-  for (const std::string& note : setup.loops->notes()) say("{}", note);
+  if (const std::uint64_t unsent = ros ? ros->end() : 0; unsent > 0) {
+    say("{} messages to ROS 2 were dropped: subscribers, or this machine, were too slow", unsent);
+  }
   if (!unwritten) {
     setup.out->commit();
-    setup.loops->commit();
   } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {
     say("what was written before is in {}", kept.string());
   }
@@ -230,6 +239,11 @@ void run(const RunSettings& settings, Faults faults) {
   }
   if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
   say_raw("seqloop: " + summary.text());
+  if (!unwritten) {
+    setup.loops->end();
+    for (const std::string& note : setup.loops->notes()) say("{}", note);
+    setup.loops->commit();
+  }
   if (setup.map) say("{}: {}", settings.map.file.string(), setup.map->summary());
   if (unwritten) std::rethrow_exception(unwritten);
   if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
@@ -273,8 +287,8 @@ Verb run_verb() {
             std::string(tasks)};
   verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
-                    "camera (/dev/video0), image folder, video file, bag (.mcap, .db3, its "
-                    "folder) or descriptors (.npy)");
+                    "camera (/dev/video0), topic of ROS 2 (ros:/camera), image folder, video file, "
+                    "bag (.mcap, .db3, its folder) or descriptors (.npy)");
   verb.options.path("reference", Access::reads, settings->reference,
                     "drive to localise in [close loops within the source]");
   verb.options.path("out", Access::writes, settings->out,
@@ -284,6 +298,9 @@ Verb run_verb() {
   verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
                       "folder for the difference matrix and a sheet of matched pairs [none]");
   add_loop_output_options(verb.options, settings->loops);
+  verb.options.section("Task");
+  verb.options.flag("ros", settings->ros,
+                    "publish to ROS 2: /seqloop/loop_closures, /seqloop/status, /diagnostics");
   verb.options.section("Source");
   verb.options.add({"pace", ValueKind::text,
                     "live: a recording at its own rate, as a camera would deliver it; max: as fast "

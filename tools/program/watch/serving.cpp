@@ -2,10 +2,7 @@
 #include "program/watch/serving.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
 #include <sys/random.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +14,7 @@
 #include <thread>
 
 #include "program/process/say.hpp"
+#include "program/watch/background.hpp"
 #include "program/watch/run_site.hpp"
 #include "seqloop/http/server.hpp"
 
@@ -98,9 +96,7 @@ class Serving::Impl {
 
  private:
   void follow() {
-    const sched_param none{};
-    static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_BATCH, &none));
-    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19));
+    become_background();
     std::unique_lock lock(mutex_);
     while (!ending_) {
       lock.unlock();

@@ -84,6 +84,9 @@ class LiveSource : public FrameSource {
 
   [[nodiscard]] LiveCounts counts() const noexcept;
 
+  /// What the device said at second 0; 0 unless times count from the first frame that was taken.
+  [[nodiscard]] double first_time_s() const noexcept { return first_time_s_; }
+
  private:
   enum class Doing : std::uint8_t { asking_for_a_frame, giving_back };
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "bags/messages.hpp"
+#include "ros/pictures.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
 
-#include "bags/cdr.hpp"
+#include "ros/cdr.hpp"
 
-namespace seqloop::bags {
+namespace seqloop::ros {
 namespace {
 
 struct Encoding {
@@ -31,14 +31,6 @@ std::optional<RawFormat> format_of(std::string_view encoding) {
   const auto* const found = std::ranges::find(encodings, encoding, &Encoding::name);
   if (found == encodings.end()) return std::nullopt;
   return found->format;
-}
-
-std::int64_t read_stamp(CdrReader& cdr) {
-  constexpr std::int64_t second = 1'000'000'000;
-  const auto seconds = cdr.number<std::int32_t>();
-  const auto nanoseconds = cdr.number<std::uint32_t>();
-  static_cast<void>(cdr.text());  // frame_id
-  return seconds * second + nanoseconds;
 }
 
 void read_image(CdrReader& cdr, RawPicture& picture, FixedText& fault) {
@@ -96,7 +88,7 @@ PictureMessage read_picture(PictureType type, std::span<const std::uint8_t> mess
                             FixedText& fault) noexcept {
   fault.clear();
   CdrReader cdr(message);
-  PictureMessage read{read_stamp(cdr), {}};
+  PictureMessage read{cdr.stamp(), {}};
   if (type == PictureType::compressed) {
     read_compressed(cdr, read.picture, fault);
   } else {
@@ -107,4 +99,4 @@ PictureMessage read_picture(PictureType type, std::span<const std::uint8_t> mess
   return read;
 }
 
-}  // namespace seqloop::bags
+}  // namespace seqloop::ros

@@ -8,7 +8,7 @@
 #include "seqloop/fixed_text.hpp"
 #include "seqloop/raw_picture.hpp"
 
-namespace seqloop::bags {
+namespace seqloop::ros {
 
 enum class PictureType : std::uint8_t {
   none,       ///< the type is no picture
@@ -33,4 +33,4 @@ struct PictureMessage {
 [[nodiscard]] PictureMessage read_picture(PictureType type, std::span<const std::uint8_t> message,
                                           FixedText& fault) noexcept;
 
-}  // namespace seqloop::bags
+}  // namespace seqloop::ros

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bags/messages.hpp"
+#include "ros/pictures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include "bags/bag_bytes.hpp"
 #include "gtest/gtest.h"
 
-namespace seqloop::bags {
+namespace seqloop::ros {
 namespace {
 
 constexpr std::int64_t stamp = 1'700'000'000'123'456'789;
@@ -108,4 +108,4 @@ TEST(Messages, TypesOfOldAndNewBags) {
 }
 
 }  // namespace
-}  // namespace seqloop::bags
+}  // namespace seqloop::ros

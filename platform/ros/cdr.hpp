@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace seqloop::bags {
+namespace seqloop::ros {
 
 /// Reads a message as ROS 2 serialises it: four bytes that say how, then CDR. Version 1 and the
 /// plain version 2 in both byte orders. Whatever does not fit is a fault that stays: from then on
@@ -55,6 +55,15 @@ class CdrReader {
                           bytes.size());
     if (text.ends_with('\0')) text.remove_suffix(1);
     return text;
+  }
+
+  /// A `std_msgs/Header`; the name of its frame is passed over. @return nanoseconds since 1970
+  [[nodiscard]] std::int64_t stamp() noexcept {
+    constexpr std::int64_t second = 1'000'000'000;
+    const std::int64_t seconds = number<std::int32_t>();
+    const std::int64_t nanoseconds = number<std::uint32_t>();
+    static_cast<void>(text());
+    return seconds * second + nanoseconds;
   }
 
   /// A sequence of bytes; looks into the message.
@@ -109,10 +118,23 @@ class CdrWriter {
     std::memcpy(bytes_.data() + place, &value, sizeof(Number));
   }
 
+  /// Seconds and nanoseconds. @param time_ns since 1970, 0 or more
+  void time(std::int64_t time_ns) {
+    constexpr std::int64_t second = 1'000'000'000;
+    number(static_cast<std::int32_t>(time_ns / second));
+    number(static_cast<std::uint32_t>(time_ns % second));
+  }
+
   void text(std::string_view text) {
     number(static_cast<std::uint32_t>(text.size() + 1));
     bytes_.insert(bytes_.end(), text.begin(), text.end());
     bytes_.push_back(0);
+  }
+
+  /// A sequence of bytes.
+  void octets(std::span<const std::uint8_t> octets) {
+    number(static_cast<std::uint32_t>(octets.size()));
+    bytes_.insert(bytes_.end(), octets.begin(), octets.end());
   }
 
   [[nodiscard]] const std::vector<std::uint8_t>& bytes() const noexcept { return bytes_; }
@@ -122,4 +144,4 @@ class CdrWriter {
   std::vector<std::uint8_t> bytes_{0, 1, 0, 0};
 };
 
-}  // namespace seqloop::bags
+}  // namespace seqloop::ros

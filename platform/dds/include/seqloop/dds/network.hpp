@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace seqloop::dds {
+
+/// Which part of ROS 2's network to join.
+struct Network {
+  std::uint32_t domain = 0;   ///< 0 .. 232
+  std::string configuration;  ///< of Cyclone DDS, XML; what comes later in it counts
+};
+
+/// A variable of the environment. @return null where it is not set
+using Environment = std::function<const char*(const char*)>;
+
+/// What ROS 2's variables ask for: ROS_DOMAIN_ID; ROS_AUTOMATIC_DISCOVERY_RANGE as Iron and later
+/// have it or, where that is not set, ROS_LOCALHOST_ONLY as Humble has it (the two do not find each
+/// other); CYCLONEDDS_URI, which overrides the rest. Messages of more than 128 MiB are not taken
+/// unless that raises Internal/MaxSampleSize.
+/// Throws SetupError: a domain or a range that is none; discovery that is switched off.
+[[nodiscard]] Network network(const Environment& environment);
+
+/// Refuses a name that ROS 2 would not take for a topic. @param flag that gave it
+/// Throws SetupError.
+void check_topic(std::string_view topic, const std::string& flag);
+
+}  // namespace seqloop::dds

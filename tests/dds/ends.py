@@ -1,0 +1,314 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The program on ROS 2's wire, with Fast DDS at the other ends.
+
+Usage: ends.py short SEQLOOP STREET FAST_END          some seconds; nothing depends on how fast the machine is
+       ends.py long  SEQLOOP STREET FAST_END SHARED   Gardens Point at 30 frames a second, 100 restarts, npm's
+                                                      decoder; needs an idle machine
+Exit code 77 where something is missing; with SEQLOOP_REQUIRE_DATA set, that fails.
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from dds import ros  # noqa: E402
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOPIC = "/camera/image_raw"
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+SECOND = 1_000_000_000
+
+
+def skip(why: str) -> None:
+    print(why)
+    sys.exit(1 if os.environ.get("SEQLOOP_REQUIRE_DATA") else 77)
+
+
+def expect(what: bool, told: str) -> None:
+    if not what:
+        sys.exit("not so: " + told)
+    print(told, flush=True)
+
+
+def stamp(frame: int, rate: float) -> int:
+    return ros.START_S * SECOND + int(frame * SECOND / rate)
+
+
+class Run:
+    """`seqloop run` on a topic; its lines are in a file."""
+
+    def __init__(self, seqloop: str, work: pathlib.Path, *more: object, env: dict | None = None) -> None:
+        self.lines, self.said = work / "lines.jsonl", work / "said"
+        with self.said.open("w") as said:
+            self.process = subprocess.Popen(
+                [str(word) for word in (seqloop, "run", "--source", "ros:" + TOPIC, "--out", self.lines,
+                                        "--summary", work / "summary.json", *more)],
+                stderr=said, env=env or ros.environment())
+        self.summary = work / "summary.json"
+        # What comes before the loop runs counts for nothing; that it does, its first lines tell: nobody publishes.
+        while not any(file.stat().st_size > 0 for file in work.glob(".lines.jsonl*")):
+            if self.process.poll() is not None:
+                sys.exit(f"run ended: {self.said.read_text()}")
+            time.sleep(0.1)
+
+    def end(self) -> list[dict]:
+        """As Ctrl-C does. @return the lines"""
+        self.process.send_signal(signal.SIGINT)
+        code = self.process.wait()
+        if code != 0:
+            sys.exit(f"run ended with {code}: {self.said.read_text()}")
+        return [json.loads(line) for line in self.lines.read_text().splitlines()]
+
+    def captured(self) -> dict:
+        return json.loads(self.summary.read_text())["captured"]
+
+
+def street(program: str, work: pathlib.Path, frames: int) -> tuple[pathlib.Path, list[pathlib.Path]]:
+    """A street that is driven along twice. @return the places' folder, and the pictures of the second drive"""
+    subprocess.run([program, "--out", work / "street", "--frames", str(frames), "--quiet"], check=True)
+    return work / "street/reference", sorted((work / "street/query").glob("*.jpg"))
+
+
+def frames_of(lines: list[dict]) -> list[dict]:
+    return [line for line in lines if line["status"] not in ("no_frame", "ended")]
+
+
+def accepted(lines: list[dict]) -> list[dict]:
+    return [answer for line in lines for answer in line["answers"] if answer["status"] == "match"]
+
+
+def read_closure(message: bytes) -> dict:
+    """A LoopClosure, value by value."""
+    assert message[:4] == b"\0\1\0\0", message[:4]
+    body, at, values = message[4:], 0, []
+    for kind in ("i", "I", "s", "i", "I", "Q", "Q", "s", "d", "d", "d", "d", "I"):
+        size = 4 if kind == "s" else struct.calcsize(kind)
+        at += -at % size
+        value = struct.unpack_from("<I" if kind == "s" else "<" + kind, body, at)[0]
+        at += size
+        if kind == "s":
+            at += value
+            value = body[at - value:at - 1].decode()
+        values.append(value)
+    assert len(body) - at < 4, (len(body), at)
+    return {"stamp": values[0] * SECOND + values[1], "match_stamp": values[3] * SECOND + values[4],
+            "frame": values[5], "match": values[6], "session": values[7], "probability": values[8]}
+
+
+def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:
+    places, pictures = street(street_program, work, 120)
+    listeners = {name: ros.Listener(fast_end, name, kind) for name, kind in (
+        ("/seqloop/loop_closures", "seqloop_msgs/msg/LoopClosure"),
+        ("/seqloop/status", "seqloop_msgs/msg/Status"),
+        ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
+        ("/seqloop/matched_pair/compressed", COMPRESSED))}
+    run = Run(seqloop, work, "--reference", places, "--ros")
+    publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED)
+    publisher.wait_until_heard()
+    sent = 0
+
+    def send(message: bytes) -> None:
+        nonlocal sent
+        publisher.send(message, 0.7 + sent / 20)
+        sent += 1
+
+    for i, picture in enumerate(pictures):
+        send(ros.compressed_image(stamp(i, 20), picture.read_bytes()))
+    # Sizes that do not fit, sequences larger than the message, and the middle of nowhere.
+    whole = ros.compressed_image(stamp(len(pictures), 20), b"\xff\xd8\xff\xe0" + b"x" * 40)
+    hostile = [whole, whole[:30], whole[:4] + b"\xff" * 60, whole[:-48] + b"\xff\xff\xff\x7f" + b"y" * 44]
+    for message in hostile:
+        send(message)
+    send(ros.compressed_image(stamp(len(pictures) + 1, 20), pictures[-1].read_bytes()))
+    expect(publisher.end() == "", "Fast DDS published all")
+    time.sleep(1.0)
+    lines = run.end()
+    frames, counts = frames_of(lines), run.captured()
+    # What came before the first that was taken counts for nothing.
+    counted = sent - frames[0]["sequence"]
+    expect(counts["grabbed"] == counts["taken"] + counts["dropped"] and counts["grabbed"] + counts["lost"] == counted,
+           f"{counted} messages: {counts['taken']} taken, {counts['dropped']} dropped, {counts['lost']} lost")
+    bad = [line for line in frames if line["status"] == "frame_error" or "error" in line]
+    expect(len(bad) <= len(hostile) and counts["failed"] <= len(hostile), f"{len(bad)} of them hostile")
+    loops = [read_closure(message) for message in listeners["/seqloop/loop_closures"].messages()]
+    answers = accepted(lines)
+    expect([loop["frame"] for loop in loops] == [answer["frame"] for answer in answers]
+           and [loop["match"] for loop in loops] == [answer["match"] for answer in answers] and len(loops) > 10,
+           f"Fast DDS got all {len(loops)} loop closures")
+    wrong = [loop for loop in loops if loop["match_stamp"] != 0 or loop["session"] != ""
+             or (loop["stamp"] - ros.START_S * SECOND) % (SECOND // 20) != 0]
+    expect(not wrong, "their stamps are the headers', to the nanosecond")
+    for name, least in (("/seqloop/status", 3), ("/diagnostics", 3), ("/seqloop/matched_pair/compressed", 1)):
+        expect(len(listeners[name].messages()) >= least, f"{name} came too")
+
+
+def parse_ms(said: str) -> dict:
+    """The table of `run`: stage -> (p50, p99, p99.9, max)"""
+    return {match[1]: tuple(float(value) for value in match[2].split())
+            for match in re.finditer(r"^  (\w+) +((?:[\d.]+ *){4})$", said, re.M)}
+
+
+def gardens(seqloop: str, fast_end: pathlib.Path, shared: pathlib.Path, work: pathlib.Path) -> None:
+    """30 frames a second of 640x480 pictures, raw and compressed: nothing is lost, and the matches are
+    those of the same pictures in a folder."""
+    from PIL import Image
+    rate = 30
+    folders = {}
+    for name in ("day_left", "night_right"):
+        for kind in ("png", "jpg"):
+            folder = folders[name, kind] = work / f"{name}_{kind}"
+            folder.mkdir()
+            for file in sorted((shared / "data/gardens_point" / name).glob("*.jpg")):
+                Image.open(file).resize((640, 480)).save(folder / f"{file.stem}.{kind}")
+    for kind, message_type, reliable in (("png", IMAGE, True), ("jpg", COMPRESSED, True), ("png", IMAGE, False)):
+        places, drive = folders["day_left", kind], folders["night_right", kind]
+        alone = subprocess.run([seqloop, "run", "--source", drive, "--reference", places], check=True,
+                               capture_output=True, text=True).stdout
+        of_folder = [json.loads(line) for line in alone.splitlines()]
+        pictures = sorted(drive.iterdir())
+        raw = [Image.open(file).convert("RGB").tobytes() if kind == "png" else file.read_bytes()
+               for file in pictures]
+        run = Run(seqloop, work, "--reference", places)
+        publisher = ros.Publisher(fast_end, TOPIC, message_type, reliable)
+        publisher.wait_until_heard()
+        # Stamped with when they are due, half a second from now on, so that their ages are those of a camera's.
+        heard, delay = time.time_ns(), 0.5
+        for i, data in enumerate(raw):
+            at = heard + int((delay + i / rate) * SECOND)
+            publisher.send(ros.image(at, 640, 480, "rgb8", 1920, data) if kind == "png"
+                           else ros.compressed_image(at, data), delay + i / rate)
+        expect(publisher.end() == "", "Fast DDS published all")
+        time.sleep(1.0)
+        lines, counts = run.end(), run.captured()
+        what = f"{message_type.split('/')[-1]}, {'reliable' if reliable else 'best effort'}"
+        ages = parse_ms(run.said.read_text())
+        print(f"{what}: {counts}; age p50 p99 p99.9 max {ages.get('age')} ms", flush=True)
+        expect(counts["taken"] == len(raw) and counts["lost"] == 0 and counts["dropped"] == 0,
+               f"{what}: all {len(raw)} pictures came, 0 lost, 0 dropped")
+        keys = ("frame", "match", "probability", "uniqueness")
+        of = [[{key: answer[key] for key in keys} for line in some for answer in line["answers"]]
+              for some in (of_folder, lines)]
+        expect(of[0] == of[1], f"{what}: the answers are the folder's, {len(accepted(lines))} of them accepted")
+
+
+def resident_kb(process: subprocess.Popen) -> int:
+    return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{process.pid}/status").read_text())[1])
+
+
+def restarts(seqloop: str, fast_end: pathlib.Path, work: pathlib.Path, pictures: list[pathlib.Path]) -> None:
+    """A publisher that is killed and comes again 100 times."""
+    run = Run(seqloop, work, "--max-places", 2000)
+    resident, pieces = [], 5
+    data = pictures[0].read_bytes()
+    for i in range(100):
+        publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED, i % 2 == 0)
+        publisher.wait_until_heard()
+        for k in range(pieces):
+            publisher.send(ros.compressed_image(stamp(i * pieces + k, 20), data), k / 20)
+        time.sleep(pieces / 20 + 0.3)
+        publisher.kill()
+        resident.append(resident_kb(run.process))
+    open_files = len(list(pathlib.Path(f"/proc/{run.process.pid}/fd").iterdir()))
+    threads = len(list(pathlib.Path(f"/proc/{run.process.pid}/task").iterdir()))
+    lines, counts = run.end(), run.captured()
+    expect(counts["grabbed"] >= 100 * pieces * 0.9,
+           f"100 publishers were killed: {counts['grabbed']} of {100 * pieces} messages came, {counts}")
+    growth = resident[-1] - resident[19]
+    expect(growth < 20_000, f"resident after 20 of them {resident[19]} kB, after 100 {resident[-1]} kB; "
+                            f"{open_files} files, {threads} threads")
+    expect(frames_of(lines)[-1]["frame"] >= counts["taken"] - 1, "frames are counted on")
+
+
+def decoded(work: pathlib.Path, kind: str, messages: list[bytes]) -> list[dict]:
+    sys.path.insert(0, str(HERE.parent / "ros"))
+    import types as _  # noqa: F401  the library's, so that ours is loaded by its file
+    import importlib.util
+    spec = importlib.util.spec_from_file_location("ros_types", HERE.parent / "ros/types.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    root = HERE.parents[1]
+    definitions = dict(module.STANDARD)
+    for file in (root / "platform/ros/msg").glob("*.msg"):
+        definitions[f"seqloop_msgs/msg/{file.stem}"] = file.read_text()
+    used: dict = {}
+    module.described(kind, definitions, used)
+    text = definitions[kind] + "".join(
+        f"\n{'=' * 80}\nMSG: {name.replace('/msg/', '/')}\n{definitions[name]}\n" for name in used)
+    job = json.dumps({"definition": text, "messages": [message.hex() for message in messages]})
+    done = subprocess.run(["node", work / "decode.mjs"], input=job, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"npm's decoder refuses {kind}: {done.stderr}")
+    return json.loads(done.stdout)
+
+
+def decoder(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:
+    """What Fast DDS gets of us, decoded by npm's @foxglove/rosmsg2-serialization."""
+    if not shutil.which("npm") or not shutil.which("node"):
+        skip("npm and node are not installed")
+    shutil.copy(HERE / "decode.mjs", work)
+    shutil.copy(HERE.parent / "bags/ends/package.json", work)
+    install = subprocess.run(["npm", "install", "--no-audit", "--no-fund"], cwd=work, capture_output=True, text=True)
+    if install.returncode != 0:
+        skip("npm cannot install its packages: " + install.stderr.strip()[-500:])
+    places, pictures = street(street_program, work, 120)
+    kinds = {"/seqloop/loop_closures": "seqloop_msgs/msg/LoopClosure", "/seqloop/status": "seqloop_msgs/msg/Status",
+             "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray", "/seqloop/matched_pair/compressed": COMPRESSED}
+    listeners = {name: ros.Listener(fast_end, name, kind) for name, kind in kinds.items()}
+    run = Run(seqloop, work, "--reference", places, "--ros")
+    publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED)
+    publisher.wait_until_heard()
+    for i, picture in enumerate(pictures):
+        publisher.send(ros.compressed_image(stamp(i, 20), picture.read_bytes()), i / 20)
+    publisher.end()
+    time.sleep(1.5)
+    answers = accepted(run.end())
+    of = {name: decoded(work, kinds[name], listener.messages()) for name, listener in listeners.items()}
+    loops = of["/seqloop/loop_closures"]
+    expect([(loop["frame"], loop["match"]) for loop in loops] == [(a["frame"], a["match"]) for a in answers]
+           and all(abs(loop["probability"] - a["probability"]) < 1e-6 for loop, a in zip(loops, answers)) and loops,
+           f"npm decodes {len(loops)} loop closures, as in run's lines")
+    last = of["/seqloop/status"][-1]
+    expect(last["matches"] == len(answers) and last["places"] == len(list(places.glob("*.jpg"))), f"status: {last}")
+    print(json.dumps(of["/diagnostics"][-1]["status"]))
+    names = [part["name"] for part in of["/diagnostics"][-1]["status"]]
+    expect(names == ["seqloop: camera", "seqloop: loop", "seqloop: map"], "diagnostics of three parts")
+    pairs = of["/seqloop/matched_pair/compressed"]
+    expect(all(pair["format"] == "jpeg" and pair["data"].startswith("ffd8ff") for pair in pairs) and pairs,
+           f"{len(pairs)} matched pairs are JPEG")
+
+
+def main() -> None:
+    mode, seqloop, street_program, fast_end = sys.argv[1], sys.argv[2], sys.argv[3], pathlib.Path(sys.argv[4])
+    if not fast_end.is_file():
+        skip("Fast DDS is not installed (Debian: libfastrtps-dev)")
+    print("domain", ros.environment()["ROS_DOMAIN_ID"])
+    with tempfile.TemporaryDirectory() as name:
+        work = pathlib.Path(name)
+        if mode == "short":
+            short(seqloop, street_program, fast_end, work)
+            return
+        shared = pathlib.Path(sys.argv[5])
+        parts = sys.argv[6:] or ["decoder", "restarts", "gardens"]
+        if "decoder" in parts:
+            (work / "decoder").mkdir()
+            decoder(seqloop, street_program, fast_end, work / "decoder")
+        if "restarts" in parts:
+            (work / "restarts").mkdir()
+            restarts(seqloop, fast_end, work / "restarts", street(street_program, work / "restarts", 20)[1])
+        if "gardens" in parts:
+            if not (shared / "data/gardens_point").is_dir():
+                skip("Gardens Point is not there")
+            gardens(seqloop, fast_end, shared, work)
+
+
+if __name__ == "__main__":
+    main()

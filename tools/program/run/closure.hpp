@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "program/run/frame_times.hpp"
+#include "seqloop/frame_report.hpp"
+#include "seqloop/ros/loop_closure.hpp"
+
+namespace seqloop::program {
+
+/// Whether an answer is a loop closure: accepted, with a place.
+[[nodiscard]] inline bool closes_loop(const Answer& answer) noexcept {
+  return answer.gate == Gate::match && answer.match.has_value();
+}
+
+/// @param start_ns when second 0 of the drive was, since 1970
+[[nodiscard]] inline std::int64_t stamp_of(std::int64_t start_ns, double time_s) noexcept {
+  return start_ns + std::llround(time_s * 1e9);
+}
+
+/// An answer that closes a loop, as ROS 2 is told it.
+/// @param times of the drive's frames
+/// @param own_places whether places are frames of the drive itself
+[[nodiscard]] inline ros::LoopClosure closure_of(const Answer& answer, const FrameTimes& times,
+                                                 std::int64_t start_ns, bool own_places) noexcept {
+  const auto stamp = [&](std::uint64_t frame) {
+    const std::optional<double> time_s = times.at(frame);
+    return time_s ? stamp_of(start_ns, *time_s) : 0;
+  };
+  return {.stamp_ns = stamp(answer.frame),
+          .match_stamp_ns = own_places ? stamp(answer.match->place) : 0,
+          .frame = answer.frame,
+          .match = answer.match->place,
+          .session = {},
+          .probability = static_cast<double>(answer.probability),
+          .uniqueness = static_cast<double>(answer.match->uniqueness),
+          .score = static_cast<double>(answer.match->score),
+          .velocity = answer.match->velocity};
+}
+
+}  // namespace seqloop::program

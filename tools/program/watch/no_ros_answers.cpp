@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Without DDS, no run gets this far: join_ros throws.
+#include "program/watch/ros_answers.hpp"
+
+namespace seqloop::program {
+
+class RosAnswers::Impl {};
+
+RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> /*participant*/,
+                       std::function<std::int64_t()> /*start_ns*/, bool /*own_places*/) {}
+RosAnswers::~RosAnswers() = default;
+void RosAnswers::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
+void RosAnswers::publish(const ProcessedFrame& /*processed*/, const LoopState& /*state*/,
+                         const RunSummary& /*summary*/, std::size_t /*places*/,
+                         Nanoseconds /*moment*/) noexcept {}
+void RosAnswers::publish(std::span<const Answer> /*answers*/) noexcept {}
+std::uint64_t RosAnswers::end() { return 0; }
+
+}  // namespace seqloop::program

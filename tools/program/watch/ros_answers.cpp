@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "program/watch/ros_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "program/run/closure.hpp"
+#include "program/run/frame_times.hpp"
+#include "program/watch/background.hpp"
+#include "program/watch/pair_picture.hpp"
+#include "program/watch/picture_store.hpp"
+#include "seqloop/dds/publisher.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using namespace std::chrono_literals;
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+constexpr auto round_time = 10ms;
+constexpr auto status_interval = 1s;
+constexpr auto pair_interval = 500ms;
+constexpr auto patience_at_end = 1s;
+
+std::string number(double value) { return fmt::format("{:.3g}", value); }
+
+}  // namespace
+
+class RosAnswers::Impl {
+ public:
+  Impl(std::shared_ptr<dds::Participant> participant, std::function<std::int64_t()> start_ns,
+       bool own_places)
+      : participant_(std::move(participant)),
+        publisher_(*participant_),
+        ask_start_(std::move(start_ns)),
+        own_places_(own_places),
+        thread_([this] { follow(); }) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  Impl(Impl&&) = delete;
+  Impl& operator=(Impl&&) = delete;
+  ~Impl() { end(); }
+
+  void end() {
+    if (!thread_.joinable()) return;
+    ending_ = true;
+    thread_.join();
+  }
+
+  /// The loop's side.
+  void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
+               std::size_t places, Nanoseconds moment) noexcept {
+    start_ns_.store(ask_start_(), std::memory_order_relaxed);
+    watch.publish(processed, state, summary, places, moment);
+  }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_ + watch.unseen(); }
+
+  Watch watch;
+  PictureStore known;  // places of another drive; the loop fills it before the first frame
+
+ private:
+  void follow() {
+    become_background();
+    while (!ending_) {
+      look();
+      std::this_thread::sleep_for(round_time);
+    }
+    look();
+    send_answers(true);
+    send_status();
+    publisher_.flush(patience_at_end);
+  }
+
+  void look() {
+    while (const Snapshot* snapshot = watch.frames().front()) {
+      newest_ = *snapshot;
+      watch.frames().pop();
+      if (newest_->frame.report.gate != Gate::no_frame) {
+        times_.add(newest_->frame.report.newest, newest_->frame.frame.time_s);
+      }
+    }
+    while (const SmallPicture* picture = watch.pictures().front()) {
+      frames_.add(*picture);
+      watch.pictures().pop();
+    }
+    watch.wishes.every.store(frames_.every(), std::memory_order_relaxed);
+    send_answers(false);
+    const SteadyTime now = std::chrono::steady_clock::now();
+    if (now - status_sent_ >= status_interval) send_status();
+  }
+
+  /// @param all also those of a frame that has not come here
+  void send_answers(bool all) {
+    while (const Answer* answer = watch.answers().front()) {
+      if (!all && !times_.at(answer->frame) && answer->frame > newest_frame()) return;
+      if (closes_loop(*answer)) send(*answer);
+      watch.answers().pop();
+    }
+  }
+
+  void send(const Answer& answer) {
+    const ros::LoopClosure closure = closure_of(answer, times_, start_ns_, own_places_);
+    ++matches_;
+    count(publisher_.publish(closure));
+    const SteadyTime now = std::chrono::steady_clock::now();
+    if (now - pair_sent_ < pair_interval || !publisher_.pair_is_wanted()) return;
+    pair_sent_ = now;
+    const std::vector<std::uint8_t> pair =
+        pair_picture(frames_, closure.frame, own_places_ ? frames_ : known, closure.match);
+    if (!pair.empty()) count(publisher_.publish_pair(closure.stamp_ns, pair));
+  }
+
+  void send_status() {
+    const SteadyTime now = std::chrono::steady_clock::now();
+    const double since_s = std::chrono::duration<double>(now - status_sent_).count();
+    status_sent_ = now;
+    if (!newest_) return;
+    const RunCounts& counts = newest_->counts;
+    const FrameReport& report = newest_->frame.report;
+    const auto at = [&](Gate gate) { return counts.at[static_cast<std::size_t>(gate)]; };
+    ros::Status status;
+    status.stamp_ns = stamp_of(start_ns_, times_.newest_s());
+    status.state = name(report.gate);
+    status.frames = counts.frames;
+    status.matches = matches_;
+    status.places = newest_->places;
+    if (report.now) {
+      status.place = report.now->place;
+      status.probability = static_cast<double>(report.now->probability);
+    }
+    status.errors = at(Gate::frame_error);
+    status.dropped = counts.dropped;
+    status.lost = counts.lost;
+    status.misses = counts.misses;
+    status.unpublished = dropped();
+    count(publisher_.publish(status));
+    diagnose(status, static_cast<double>(counts.frames - frames_told_) / since_s);
+    frames_told_ = counts.frames;
+  }
+
+  void diagnose(const ros::Status& status, double rate) {
+    using Level = ros::Diagnosis::Level;
+    const bool silent = newest_->frame.report.gate == Gate::no_frame;
+    const bool unreadable = !silent && !newest_->fault.empty();
+    const std::vector<ros::Diagnosis> diagnoses{
+        {silent       ? Level::error
+         : unreadable ? Level::warning
+                      : Level::ok,
+         "seqloop: camera",
+         newest_->fault.empty() ? "frames come" : std::string(newest_->fault.view()),
+         {{"frames", std::to_string(status.frames)},
+          {"frames a second", number(rate)},
+          {"unreadable", std::to_string(status.errors)},
+          {"dropped", std::to_string(status.dropped)},
+          {"lost", std::to_string(status.lost)}}},
+        {newest_->state.overloaded ? Level::warning : Level::ok,
+         "seqloop: loop",
+         newest_->state.overloaded ? "too slow: frames are left out" : status.state,
+         {{"matches", std::to_string(status.matches)},
+          {"missed the budget", std::to_string(status.misses)},
+          {"probability now", number(status.probability)},
+          {"unpublished", std::to_string(status.unpublished)}}},
+        {newest_->frame.report.map_full ? Level::warning : Level::ok,
+         "seqloop: map",
+         newest_->frame.report.map_full ? "the map is full" : "there is room",
+         {{"places", std::to_string(status.places)}}}};
+    const auto wall = std::chrono::system_clock::now().time_since_epoch();
+    const auto wall_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(wall).count();
+    count(publisher_.publish(wall_ns, diagnoses));
+  }
+
+  void count(bool sent) noexcept {
+    if (!sent) ++dropped_;
+  }
+
+  [[nodiscard]] std::uint64_t newest_frame() const noexcept {
+    return newest_ ? newest_->frame.report.newest : 0;
+  }
+
+  std::shared_ptr<dds::Participant> participant_;
+  dds::Publisher publisher_;
+  std::function<std::int64_t()> ask_start_;
+  bool own_places_;
+  std::atomic<std::int64_t> start_ns_{0};
+  std::atomic<std::uint64_t> dropped_{0};
+
+  // The thread's.
+  FrameTimes times_;
+  PictureStore frames_;
+  std::optional<Snapshot> newest_;
+  std::uint64_t matches_ = 0;
+  std::uint64_t frames_told_ = 0;
+  SteadyTime status_sent_ = std::chrono::steady_clock::now();
+  SteadyTime pair_sent_;
+
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> participant,
+                       std::function<std::int64_t()> start_ns, bool own_places)
+    : impl_(std::make_unique<Impl>(std::move(participant), std::move(start_ns), own_places)) {}
+
+RosAnswers::~RosAnswers() = default;
+
+void RosAnswers::add_place(const Image& image, std::uint64_t number) {
+  SmallPicture small;
+  if (shrink(image, number, small)) impl_->known.add(small);
+}
+
+void RosAnswers::publish(const ProcessedFrame& processed, const LoopState& state,
+                         const RunSummary& summary, std::size_t places,
+                         Nanoseconds moment) noexcept {
+  impl_->publish(processed, state, summary, places, moment);
+}
+
+void RosAnswers::publish(std::span<const Answer> answers) noexcept {
+  impl_->watch.publish(answers);
+}
+
+std::uint64_t RosAnswers::end() {
+  impl_->end();
+  return impl_->dropped();
+}
+
+}  // namespace seqloop::program

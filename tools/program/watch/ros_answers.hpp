@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "program/watch/watch.hpp"
+
+namespace seqloop::dds {
+class Participant;
+}
+
+namespace seqloop::program {
+
+/// Tells ROS 2 what a run finds, while it goes on: the topics of `dds::Publisher`. A thread of the
+/// lowest priority sends; the loop hands it snapshots and never waits. What finds no room on the
+/// way, or is too much for the subscribers, is dropped and counted.
+class RosAnswers {
+ public:
+  /// @param start_ns when the drive's second 0 was, since 1970; asked by the loop's thread
+  /// @param own_places whether places are frames of the drive itself
+  /// Throws SetupError.
+  RosAnswers(std::shared_ptr<dds::Participant> participant, std::function<std::int64_t()> start_ns,
+             bool own_places);
+  RosAnswers(const RosAnswers&) = delete;
+  RosAnswers& operator=(const RosAnswers&) = delete;
+  RosAnswers(RosAnswers&&) = delete;
+  RosAnswers& operator=(RosAnswers&&) = delete;
+  ~RosAnswers();
+
+  /// A picture of a place, before the first frame. Allocates: yes.
+  void add_place(const Image& image, std::uint64_t number);
+
+  /// As `Watch::publish`.
+  void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
+               std::size_t places, Nanoseconds moment) noexcept;
+  void publish(std::span<const Answer> answers) noexcept;
+
+  /// Sends what waits, and gives subscribers a second to get it. Nothing is published afterwards.
+  /// @return messages that were dropped
+  std::uint64_t end();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seqloop::program
