@@ -286,6 +286,38 @@ def decoder(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pat
            f"{len(pairs)} matched pairs are JPEG")
 
 
+def pose_graph(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:
+    """A live drive along a street, twice, with odometry on a topic, whose publisher comes late."""
+    rate, odometry_rate = 20, 50
+    places, pictures = street(street_program, work, 120)
+    pictures = sorted(places.glob("*.jpg")) + pictures
+    graph = work / "graph.g2o"
+    run = Run(seqloop, work, "--odometry", "/odom", "--pose-graph", graph, "--exclude", 40,
+              "--decide-by", "uniqueness")
+    camera = ros.Publisher(fast_end, TOPIC, COMPRESSED)
+    camera.wait_until_heard()
+    odometry = ros.Publisher(fast_end, "/odom", "nav_msgs/msg/Odometry", False)
+    odometry.wait_until_heard()
+    events = [(i / rate, camera, ros.compressed_image(stamp(i, rate), picture.read_bytes()))
+              for i, picture in enumerate(pictures)]
+    events += [(i / odometry_rate, odometry, ros.odometry(stamp(i, odometry_rate), i / odometry_rate, 2.0, (0, 0, 0, 1)))
+               for i in range(-5, len(pictures) * odometry_rate // rate + 5)]
+    for due, publisher, message in sorted(events, key=lambda event: event[0]):
+        publisher.send(message, 2.0 + due)
+    expect(camera.end() == odometry.end() == "", "Fast DDS published pictures and odometry")
+    time.sleep(1.0)
+    lines = run.end()
+    taken = {line["sequence"] for line in frames_of(lines)}
+    rows = [line.split() for line in graph.read_text().splitlines()]
+    vertices = {int(row[1]): [float(value) for value in row[2:5]] for row in rows if row[0] == "VERTEX_SE3:QUAT"}
+    first = min(taken)
+    off = max(abs(place[0] - (number + first) / rate) for number, place in vertices.items())
+    expect(len(vertices) == len(taken) and off < 1e-6, f"{len(vertices)} poses, each where the odometry has it")
+    edges = [row for row in rows if row[0] == "EDGE_SE3:QUAT"]
+    loops = len(edges) - (len(vertices) - 1)
+    expect(loops == len(accepted(lines)) > 0, f"{loops} loops")
+
+
 def main() -> None:
     mode, seqloop, street_program, fast_end = sys.argv[1], sys.argv[2], sys.argv[3], pathlib.Path(sys.argv[4])
     if not fast_end.is_file():
@@ -297,10 +329,13 @@ def main() -> None:
             short(seqloop, street_program, fast_end, work)
             return
         shared = pathlib.Path(sys.argv[5])
-        parts = sys.argv[6:] or ["decoder", "restarts", "gardens"]
+        parts = sys.argv[6:] or ["decoder", "pose_graph", "restarts", "gardens"]
         if "decoder" in parts:
             (work / "decoder").mkdir()
             decoder(seqloop, street_program, fast_end, work / "decoder")
+        if "pose_graph" in parts:
+            (work / "pose_graph").mkdir()
+            pose_graph(seqloop, street_program, fast_end, work / "pose_graph")
         if "restarts" in parts:
             (work / "restarts").mkdir()
             restarts(seqloop, fast_end, work / "restarts", street(street_program, work / "restarts", 20)[1])
