@@ -117,6 +117,7 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_EQ(json(get("/api/marks"))[0]["name"], "<door>");
   EXPECT_EQ(answered("/api/control", {{"do", "threshold"}, {"min_probability", 2}}), "400");
   EXPECT_EQ(answered("/api/control", {{"do", 7}}), "400");
+  EXPECT_EQ(answered("/api/control", {{"do", "save"}}), "409") << "there is no map in a file";
   EXPECT_EQ(answered("/api/control", Json::array()), "400");
   EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", "rejected"}}), "404");
   EXPECT_EQ(answered("/api/other", Json::object()), "404");
@@ -137,6 +138,37 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_NE(get("/api/truth.csv").find("query,reference\n"), std::string::npos);
   EXPECT_EQ(answered("/api/control", {{"do", "stop"}}), "200");
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+}
+
+TEST_F(Serve, AMapThatLastsIsSavedWhenAskedAndKeepsWhatAPersonSaid) {
+  ASSERT_EQ(run("match --query q.npy --map m.seqloop --session monday --out m.csv").exit_code, 0);
+  start("--pace live --fps 60 --map m.seqloop --session tuesday --save-every-s 3600");
+  ASSERT_TRUE(until([](const Json& status) { return status["loops"]["listed"] > 1; }));
+  Json status = json(get("/api/status"));
+  ASSERT_EQ(status["run"]["sessions"].size(), 2U);
+  EXPECT_EQ(status["run"]["sessions"][0], Json::parse(R"({"name": "monday", "first": 0})"));
+  EXPECT_EQ(status["run"]["sessions"][1], Json::parse(R"({"name": "tuesday", "first": 600})"));
+  EXPECT_EQ(status["map"]["saved"], 0);
+  ASSERT_TRUE(post("/api/control", {{"do", "save"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(until([](const Json& now) { return now["map"]["saved"] > 20; }));
+  for (const char* word : {"accepted", "rejected"}) {
+    ASSERT_TRUE(post("/api/verdict", {{"loop", 0}, {"verdict", word}}).starts_with("HTTP/1.1 200"));
+  }
+  ASSERT_TRUE(
+      post("/api/verdict", {{"loop", 1}, {"verdict", "accepted"}}).starts_with("HTTP/1.1 200"));
+  const Json loops = json(get("/api/loops?first=0&count=2"))["loops"];
+  EXPECT_TRUE(post("/api/control", {{"do", "stop"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  ASSERT_EQ(run("map check m.seqloop").exit_code, 0);
+  ASSERT_EQ(run("map export m.seqloop --out out").exit_code, 0);
+  const std::string links = test::read_all(file("out/links.csv"));
+  std::size_t at = 0;
+  for (const auto& [loop, word] : {std::pair{0U, 2}, std::pair{0U, -1}, std::pair{1U, 2}}) {
+    const std::string line = "2," + loops[loop]["frame"].dump() + ",1,0," +
+                             loops[loop]["match"].dump() + "," + std::to_string(word) + "\n";
+    at = links.find(line, at);
+    EXPECT_NE(at, std::string::npos) << line << links;
+  }
 }
 
 TEST_F(Serve, AnswersAreTheSameWhoeverLooks) {

@@ -79,7 +79,7 @@ TEST(WatchSoak, ALongRunBeforeBadClientsTakesNoMoreMemory) {
     processed.report.newest = n;
     processed.report.gate = answers[0].gate;
     summary.add(processed, {});
-    watch->publish(processed, {}, summary, static_cast<std::size_t>(n), 10ms * n);
+    watch->publish(processed, {}, summary, {static_cast<std::size_t>(n), 0}, 10ms * n);
     if (n % 200 == 0) std::this_thread::sleep_for(1ms);
     if (n == frames / 2) before = resident_memory();
   }

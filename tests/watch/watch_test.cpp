@@ -2,6 +2,7 @@
 // What a loop hands over to whoever watches it, and what these make of it.
 #include "program/watch/watch.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -9,11 +10,13 @@
 #include <sstream>
 
 #include "core/allocation_guard.hpp"
+#include "core/matcher.hpp"
 #include "expect_setup_error.hpp"
 #include "program/watch/metrics.hpp"
 #include "program/watch/picture_store.hpp"
 #include "program/watch/report_page.hpp"
 #include "program/watch/run_view.hpp"
+#include "without_system_calls.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -47,14 +50,28 @@ class WatchedLoop {
     processed.times.grab = 300us;
     processed.times.match = 3ms;
     processed.times.total = 3300us;
-    const LoopState state{};
-    summary_.add(processed, state);
-    watch->publish(processed, state, summary_, 40, std::chrono::milliseconds(10 * number));
+    publish(processed, number);
+  }
+
+  /// A frame of a detector.
+  void frame(const FrameReport& report) {
+    ProcessedFrame processed;
+    processed.report = report;
+    processed.frame.image = {pixels_.data(), 320, 200, 320, PixelFormat::gray8};
+    processed.times.total = 1ms;
+    publish(processed, report.newest);
   }
 
   std::unique_ptr<Watch> watch = std::make_unique<Watch>();
 
  private:
+  void publish(const ProcessedFrame& processed, std::uint64_t number) {
+    const LoopState state{};
+    summary_.add(processed, state);
+    watch->publish(processed, state, summary_, {40, number / 2},
+                   std::chrono::milliseconds(10 * number));
+  }
+
   RunSummary summary_;
   std::vector<std::uint8_t> pixels_;
   std::array<Answer, 1> answers_;
@@ -74,6 +91,28 @@ TEST(Watch, HandingOverTakesNoMemoryEvenWhereNobodyTakesIt) {
   EXPECT_EQ(guard.count(), 1U);
 }
 
+TEST(Watch, AFrameThatIsWatchedMakesNoSystemCall) {
+  if (const char* const why = test::system_calls_cannot_be_forbidden()) GTEST_SKIP() << why;
+  const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.exclude = 30;
+  PlaceMap map(config, {600, 40});
+  Detector detector(config, map);
+  WatchedLoop loop;
+  loop.watch->wishes.pictures = true;
+  EXPECT_EQ(test::status_without_system_calls([&] {
+              std::size_t matched = 0;
+              for (std::size_t n = 0; n < 500; ++n) {
+                const FrameReport report = detector.step(lap[n % lap.size()]);
+                matched += report.match.has_value();
+                loop.frame(report);
+              }
+              return matched > 100 && loop.watch->pictures().front() != nullptr;
+            }),
+            0);
+}
+
 TEST(Watch, WhatIsTakenIsWhatWasHandedOver) {
   WatchedLoop loop;
   for (std::uint64_t n = 0; n < 20; ++n) loop.frame(n);
@@ -82,6 +121,8 @@ TEST(Watch, WhatIsTakenIsWhatWasHandedOver) {
     ASSERT_NE(snapshot, nullptr);
     EXPECT_EQ(snapshot->frame.report.newest, n);
     EXPECT_EQ(snapshot->counts.frames, n + 1);
+    EXPECT_EQ(snapshot->map.places, 40U);
+    EXPECT_EQ(snapshot->map.saved, n / 2);
     EXPECT_EQ(snapshot->counts.at[static_cast<std::size_t>(Gate::match)], n + 1);
     EXPECT_EQ(snapshot->counts.stages[2].in[5], n + 1) << "3 ms is in the bucket up to 5 ms";
     EXPECT_EQ(snapshot->frame.frame.image.data, nullptr) << "which is the loop's own";
@@ -181,6 +222,27 @@ TEST(RunView, VerdictsBecomeATruth) {
   EXPECT_TRUE(view.judge(3, Verdict::none));
   EXPECT_EQ(view.truth_csv(), "query,reference\n10,1\n");
   EXPECT_EQ(view.loops(2, 1)["loops"][0]["verdict"], "rejected");
+}
+
+TEST(RunView, TellsTroublesOnceAndTheNewestOfThem) {
+  RunView view(Json::object());
+  const auto snapshot = std::make_unique<Snapshot>();
+  EXPECT_TRUE(view.status()["troubles"].empty());
+  EXPECT_FALSE(view.status()["map"].contains("saved")) << "of a map in memory nothing is";
+  for (std::uint64_t n = 0; n < 100; ++n) {
+    snapshot->frame.report.newest = n;
+    snapshot->fault.assign({n < 50 ? "torn" : ""});
+    snapshot->remark.assign({n == 60 || n > 70 ? fmt::format("odd {}", n) : ""});
+    view.take(*snapshot, 0.0);
+  }
+  const Json troubles = view.status()["troubles"];
+  ASSERT_EQ(troubles.size(), RunView::most_troubles);
+  EXPECT_EQ(troubles.back(), Json::parse(R"({"frame": 99, "times": 1, "text": "odd 99"})"));
+  RunView torn(Json{{"sessions", Json::array()}});
+  snapshot->fault.assign({"torn"});
+  for (int n = 0; n < 3; ++n) torn.take(*snapshot, 0.0);
+  EXPECT_EQ(torn.status()["troubles"][0]["times"], 3);
+  EXPECT_EQ(torn.status()["map"]["saved"], 0);
 }
 
 TEST(RunView, IsIllWithoutFramesAndOverItsBudget) {

@@ -1,61 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The match stage asks nothing of the system: a process that is killed for any system call lives.
 #include <gtest/gtest.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <csignal>
 #include <cstddef>
-#include <functional>
 
 #include "core/matcher.hpp"
+#include "without_system_calls.hpp"
 
 namespace seqloop::live {
 namespace {
 
-constexpr int not_permitted = 77;
-
-/// From now on any system call but exit_group kills the process.
-bool forbid_system_calls() {
-  std::array<sock_filter, 4> rules = {{
-      {BPF_LD | BPF_W | BPF_ABS, 0, 0, offsetof(seccomp_data, nr)},
-      {BPF_JMP | BPF_JEQ | BPF_K, 0, 1, SYS_exit_group},
-      {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_ALLOW},
-      {BPF_RET | BPF_K, 0, 0, SECCOMP_RET_KILL_PROCESS},
-  }};
-  sock_fprog program{rules.size(), rules.data()};
-  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-}
-
-/// How a process ends that makes the call without any system call.
-int status_without_system_calls(const std::function<bool()>& call) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!forbid_system_calls()) _exit(not_permitted);
-    _exit(call() ? 0 : 1);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return status;
-}
+using test::status_without_system_calls;
 
 class SystemCalls : public testing::Test {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers make system calls of their own";
-#endif
-    const int status = status_without_system_calls([] { return true; });
-    if (WIFEXITED(status) && WEXITSTATUS(status) == not_permitted) {
-      GTEST_SKIP() << "seccomp filters are not permitted here";
-    }
-    ASSERT_EQ(status, 0);
+    if (const char* const why = test::system_calls_cannot_be_forbidden()) GTEST_SKIP() << why;
+    ASSERT_EQ(status_without_system_calls([] { return true; }), 0);
   }
 };
 

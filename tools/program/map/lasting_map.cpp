@@ -57,6 +57,23 @@ class SqliteMap : public LastingMap {
     return writer_ ? writer_->saved() : 0;
   }
 
+  [[nodiscard]] std::vector<Session> sessions() const override {
+    const PlaceOrder& order = map_->order();
+    std::vector<Session> all;
+    for (std::size_t session = 0; session < order.sessions(); ++session) {
+      const std::size_t row = order.session(session).first;
+      all.push_back(
+          {stored_.name(session), row < order.size() ? order.number(row) : order.next_number()});
+    }
+    return all;
+  }
+
+  bool save_now() override { return writer_ && writer_->save_now(); }
+
+  bool judge(std::uint64_t frame, std::uint64_t place, Word word) override {
+    return writer_ && writer_->judge(frame, place, word);
+  }
+
   [[nodiscard]] Seen where(std::uint64_t number) const override {
     const PlaceOrder& order = map_->order();
     const std::size_t session = order.session_of_number(number);

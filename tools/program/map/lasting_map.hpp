@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "program/map/map_settings.hpp"
 #include "seqloop/detector.hpp"
@@ -54,6 +55,25 @@ class LastingMap {
 
   /// Frames of the drive, from the first on, that are on the disk for good. Never waits.
   [[nodiscard]] virtual std::uint64_t saved() const noexcept = 0;
+
+  /// A drive of the map. Oldest first; this run's is the last, unless the map is only read.
+  struct Session {
+    std::string name;
+    std::uint64_t first = 0;  ///< number of its first place, or of the one that it will have
+  };
+  /// Those with places. To be called by the loop's thread, after `begin`.
+  [[nodiscard]] virtual std::vector<Session> sessions() const = 0;
+
+  /// Saves at once what is noted, in the thread that saves. From any thread but the loop's.
+  /// @return false where nothing is saved: the map is only read, or the drive is over
+  virtual bool save_now() = 0;
+
+  /// A person's word on an answer.
+  enum class Word : std::uint8_t { none, accepted, rejected };
+  /// Keeps such a word. From any thread but the loop's.
+  /// @param frame as its source counts @param place the number of the place it was matched with
+  /// @return as `save_now`
+  virtual bool judge(std::uint64_t frame, std::uint64_t place, Word word) = 0;
 
   /// Where a place was seen.
   struct Seen {

@@ -136,11 +136,35 @@ void MapWriter::work(double every_s) {
   while (!stop_) {
     // Saving takes its time, too.
     constexpr double share = 0.5;
-    wake_.wait_for(lock, std::chrono::duration<double>(share * every_s), [this] { return stop_; });
+    wake_.wait_for(lock, std::chrono::duration<double>(share * every_s),
+                   [this] { return stop_ || asked_; });
+    asked_ = false;
     lock.unlock();
     save({});
     lock.lock();
   }
+}
+
+bool MapWriter::save_now() {
+  const std::scoped_lock lock(mutex_);
+  asked_ = !stop_;
+  wake_.notify_one();
+  return asked_;
+}
+
+bool MapWriter::judge(std::uint64_t frame, std::uint64_t place, LastingMap::Word word) {
+  const std::scoped_lock lock(mutex_);
+  if (stop_) return false;
+  const double said = word == LastingMap::Word::accepted   ? sqlite::person_accepted
+                      : word == LastingMap::Word::rejected ? sqlite::person_rejected
+                                                           : sqlite::person_silent;
+  words_.push_back({0, frame, std::nullopt, place, said});
+  return true;
+}
+
+std::size_t MapWriter::words() {
+  const std::scoped_lock lock(mutex_);
+  return words_.size();
 }
 
 /// Saves all that is noted. @param removed numbers of places that go
@@ -150,7 +174,8 @@ bool MapWriter::save(std::span<const std::uint64_t> removed) {
     const std::uint64_t end = frames_.load(std::memory_order_acquire);
     while (saved_frames_.load(std::memory_order_relaxed) < end ||
            saved_links_.load(std::memory_order_relaxed) <
-               links_noted_.load(std::memory_order_acquire)) {
+               links_noted_.load(std::memory_order_acquire) ||
+           words() > 0) {
       save_once({});
     }
     if (stopped_) save_once(removed);
@@ -194,6 +219,12 @@ void MapWriter::save_once(std::span<const std::uint64_t> removed) {
     if (noted.place && last > first && *noted.place > records_.back().number) break;
     batch_links_.push_back(noted);
   }
+  const std::size_t linked = batch_links_.size();
+  {
+    const std::scoped_lock lock(mutex_);
+    batch_links_.insert(batch_links_.end(), words_.begin(), words_.end());
+  }
+  const std::size_t said = batch_links_.size() - linked;
   const bool ready = handing_.load(std::memory_order_acquire) == Handing::ready;
   sqlite::MapBatch batch;
   batch.frames = frames;
@@ -205,7 +236,11 @@ void MapWriter::save_once(std::span<const std::uint64_t> removed) {
   stored_->file().save(stored_->session(), batch);
   if (ready) handing_.store(Handing::asked, std::memory_order_release);
   saved_places_.store(last, std::memory_order_release);
-  saved_links_.store(first_link + batch_links_.size(), std::memory_order_release);
+  saved_links_.store(first_link + linked, std::memory_order_release);
+  {
+    const std::scoped_lock lock(mutex_);
+    words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(said));
+  }
   saved_frames_.store(frames, std::memory_order_release);
 }
 

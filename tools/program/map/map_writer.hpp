@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "program/map/lasting_map.hpp"
 #include "program/map/stored_map.hpp"
 #include "seqloop/detector.hpp"
 
@@ -53,6 +54,12 @@ class MapWriter {
     return saved_places_.load(std::memory_order_acquire);
   }
 
+  /// Saves soon. From any thread but the loop's: it may wait. @return false once the drive is over
+  bool save_now();
+
+  /// Keeps a person's word on an answer, likewise.
+  bool judge(std::uint64_t frame, std::uint64_t place, LastingMap::Word word);
+
   /// What there is to say of the disk, once: that it refuses, or takes again. Never waits.
   [[nodiscard]] std::optional<std::string> trouble();
 
@@ -85,6 +92,7 @@ class MapWriter {
   bool save(std::span<const std::uint64_t> removed);
   void save_once(std::span<const std::uint64_t> removed);
   void tell(std::string text);
+  [[nodiscard]] std::size_t words();
 
   StoredMap* stored_;
   const PlaceMap* map_;
@@ -122,8 +130,10 @@ class MapWriter {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  bool stop_ = false;                // under the mutex
-  std::optional<std::string> told_;  // under the mutex
+  bool stop_ = false;                     // under the mutex
+  bool asked_ = false;                    // under the mutex: to save now
+  std::vector<sqlite::SavedLink> words_;  // under the mutex: of persons, not saved yet
+  std::optional<std::string> told_;       // under the mutex
   std::atomic<bool> has_told_{false};
   std::thread thread_;
 };

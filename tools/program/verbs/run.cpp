@@ -138,6 +138,7 @@ void run(const RunSettings& settings, Faults faults) {
   TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
   // A thread that saves is no part of the loop.
   if (setup.map) setup.map->begin(map, setup.config, settings.matcher.method);
+  if (setup.map && serving) serving->keep_in(*setup.map);
   become_real_time(settings.real_time);
   warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
   start_playing(setup, settings, clock);
@@ -176,8 +177,9 @@ void run(const RunSettings& settings, Faults faults) {
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
-    if (serving) serving->watch().publish(*processed, state, summary, map.size(), clock.now());
-    if (ros) ros->publish(*processed, state, summary, map.size(), clock.now());
+    const MapState kept{map.size(), setup.map ? setup.map->saved() : 0};
+    if (serving) serving->watch().publish(*processed, state, summary, kept, clock.now());
+    if (ros) ros->publish(*processed, state, summary, kept, clock.now());
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     attempt([&] { lines.add(*processed, state); });

@@ -92,7 +92,10 @@ std::string metrics(const Snapshot& snapshot, const MonitorFacts& facts) {
   const auto& now = snapshot.frame.report.now;
   text.one("seqloop_now_probability", "gauge", "That the newest frame is at its likeliest place.",
            now ? static_cast<double>(now->probability) : 0.0);
-  text.one("seqloop_places", "gauge", "Places in the map.", snapshot.places);
+  text.one("seqloop_places", "gauge", "Places in the map.", snapshot.map.places);
+  text.one("seqloop_saved_frames", "gauge",
+           "Frames of the drive that are on the disk for good; 0 where the map is in no file.",
+           snapshot.map.saved);
   text.one("seqloop_places_room", "gauge", "Places that the map has room for.", facts.places_room);
   text.one("seqloop_rows_scanned", "gauge", "Rows of the map scanned at the newest frame.",
            snapshot.frame.report.work.scanned);

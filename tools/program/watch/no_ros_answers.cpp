@@ -11,7 +11,7 @@ RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> /*participant*/,
 RosAnswers::~RosAnswers() = default;
 void RosAnswers::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
 void RosAnswers::publish(const ProcessedFrame& /*processed*/, const LoopState& /*state*/,
-                         const RunSummary& /*summary*/, std::size_t /*places*/,
+                         const RunSummary& /*summary*/, const MapState& /*map*/,
                          Nanoseconds /*moment*/) noexcept {}
 void RosAnswers::publish(std::span<const Answer> /*answers*/) noexcept {}
 std::uint64_t RosAnswers::end() { return 0; }

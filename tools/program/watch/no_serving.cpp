@@ -18,6 +18,7 @@ Serving::~Serving() = default;
 
 // Never reached: there is no object.
 Watch& Serving::watch() noexcept { std::abort(); }
+void Serving::keep_in(LastingMap& /*map*/) {}
 void Serving::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
 
 }  // namespace seqloop::program

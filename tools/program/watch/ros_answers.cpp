@@ -57,9 +57,9 @@ class RosAnswers::Impl {
 
   /// The loop's side.
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
-               std::size_t places, Nanoseconds moment) noexcept {
+               const MapState& map, Nanoseconds moment) noexcept {
     start_ns_.store(ask_start_(), std::memory_order_relaxed);
-    watch.publish(processed, state, summary, places, moment);
+    watch.publish(processed, state, summary, map, moment);
   }
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_ + watch.unseen(); }
@@ -132,7 +132,7 @@ class RosAnswers::Impl {
     status.state = name(report.gate);
     status.frames = counts.frames;
     status.matches = matches_;
-    status.places = newest_->places;
+    status.places = newest_->map.places;
     if (report.now) {
       status.place = report.now->place;
       status.probability = static_cast<double>(report.now->probability);
@@ -218,9 +218,9 @@ void RosAnswers::add_place(const Image& image, std::uint64_t number) {
 }
 
 void RosAnswers::publish(const ProcessedFrame& processed, const LoopState& state,
-                         const RunSummary& summary, std::size_t places,
+                         const RunSummary& summary, const MapState& map,
                          Nanoseconds moment) noexcept {
-  impl_->publish(processed, state, summary, places, moment);
+  impl_->publish(processed, state, summary, map, moment);
 }
 
 void RosAnswers::publish(std::span<const Answer> answers) noexcept {

@@ -35,7 +35,7 @@ class RosAnswers {
 
   /// As `Watch::publish`.
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
-               std::size_t places, Nanoseconds moment) noexcept;
+               const MapState& map, Nanoseconds moment) noexcept;
   void publish(std::span<const Answer> answers) noexcept;
 
   /// Sends what waits, and gives subscribers a second to get it. Nothing is published afterwards.

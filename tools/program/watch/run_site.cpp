@@ -59,6 +59,15 @@ void RunSite::add_place(const Image& image, std::uint64_t number) {
   if (shrink(image, number, *small)) places_.add(*small);
 }
 
+void RunSite::keep_in(LastingMap& map) {
+  const std::scoped_lock lock(mutex_);
+  map_ = &map;
+  Json& sessions = view_.run()["sessions"] = Json::array();
+  for (const LastingMap::Session& session : map.sessions()) {
+    sessions.push_back({{"name", session.name}, {"first", session.first}});
+  }
+}
+
 bool RunSite::looked_at() const { return Clock::now() - looked_at_ < still_looks; }
 
 void RunSite::take() {
@@ -274,13 +283,16 @@ http::Reply RunSite::control(const Json& wish) {
     wishes.pause.store(what == "pause", std::memory_order_relaxed);
   } else if (what == "stop") {
     wishes.stop.store(true, std::memory_order_relaxed);
+  } else if (what == "save") {
+    if (map_ == nullptr) return fault(409, "this run keeps no map in a file");
+    if (!map_->save_now()) return fault(409, "the map is only read, or the run has ended");
   } else if (what == "threshold") {
     return set_threshold(wish);
   } else if (what == "mark") {
     if (!view_.mark(wish.value("name", "")))
       return fault(409, "there is no frame yet, or no room for more marks");
   } else {
-    return fault(400, "do is pause, resume, stop, threshold or mark");
+    return fault(400, "do is pause, resume, stop, save, threshold or mark");
   }
   return json_reply({{"done", what}});
 }
@@ -292,8 +304,15 @@ http::Reply RunSite::judge(const Json& wish) {
                                                : Verdict::none;
   if (!wish.contains("loop") || !wish["loop"].is_number_unsigned())
     return fault(400, "loop is the number of a loop");
-  if (!view_.judge(wish["loop"].get<std::size_t>(), verdict))
-    return fault(404, "there is no such loop");
+  const auto number = wish["loop"].get<std::size_t>();
+  if (!view_.judge(number, verdict)) return fault(404, "there is no such loop");
+  if (map_ != nullptr) {
+    const Loop& loop = view_.loop_list()[number];
+    map_->judge(loop.frame, loop.match,
+                verdict == Verdict::accepted   ? LastingMap::Word::accepted
+                : verdict == Verdict::rejected ? LastingMap::Word::rejected
+                                               : LastingMap::Word::none);
+  }
   return json_reply({{"loop", wish["loop"]}, {"verdict", word}});
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "program/map/lasting_map.hpp"
 #include "program/watch/picture_store.hpp"
 #include "program/watch/run_view.hpp"
 #include "seqloop/http/server.hpp"
@@ -32,6 +33,9 @@ class RunSite : public http::Site {
   void serve_by(const http::Server& server) { server_ = &server; }
 
   void add_place(const Image& image, std::uint64_t number);
+
+  /// The map that the drive is added to. @param map lives longer
+  void keep_in(LastingMap& map);
 
   /// Takes what the loop has handed over since, and makes an event of it where somebody looks.
   void follow();
@@ -70,6 +74,7 @@ class RunSite : public http::Site {
   [[nodiscard]] http::Reply judge(const Json& wish);
 
   Watch* watch_;
+  LastingMap* map_ = nullptr;
   bool own_places_;
   const http::Server* server_ = nullptr;
   mutable std::mutex mutex_;

@@ -52,6 +52,7 @@ std::uint64_t resident_memory() {
 
 void RunView::take(const Snapshot& snapshot, double now_s) {
   newest_ = snapshot;
+  note_trouble(snapshot);
   if (!frame_at_s_) frame_at_s_ = now_s;
   if (snapshot.frame.report.gate == Gate::no_frame) return;
   frame_at_s_ = now_s;
@@ -67,6 +68,18 @@ void RunView::take(const Snapshot& snapshot, double now_s) {
   times_s_.emplace_back(snapshot.frame.report.newest, snapshot.frame.frame.time_s);
   if (times_s_.size() > most_times) times_s_.pop_front();
   ++frames_seen_;
+}
+
+void RunView::note_trouble(const Snapshot& snapshot) {
+  const std::string_view text =
+      snapshot.fault.view().empty() ? snapshot.remark.view() : snapshot.fault.view();
+  if (text.empty()) return;
+  if (troubles_.empty() || troubles_.back().text != text) {
+    troubles_.push_back({0, 0, std::string(text)});
+    if (troubles_.size() > most_troubles) troubles_.pop_front();
+  }
+  troubles_.back().frame = snapshot.frame.report.newest;
+  ++troubles_.back().times;
 }
 
 void RunView::take(const Answer& answer) {
@@ -133,7 +146,13 @@ Json RunView::status() const {
   counted["lost"] = counts.lost;
   counted["overloaded"] = counts.overloaded;
   json["stages"] = stages();
-  json["map"] = {{"places", newest_.places}, {"scanned", newest_.frame.report.work.scanned}};
+  json["map"] = {{"places", newest_.map.places}, {"scanned", newest_.frame.report.work.scanned}};
+  if (run_.contains("sessions")) json["map"]["saved"] = newest_.map.saved;
+  json["troubles"] = Json::array();
+  for (const Trouble& trouble : troubles_) {
+    json["troubles"].push_back(
+        {{"frame", trouble.frame}, {"times", trouble.times}, {"text", trouble.text}});
+  }
   json["loops"] = {{"count", loops_seen_},
                    {"listed", loop_list_.size()},
                    {"rejected", std::ranges::count(loop_list_, Verdict::rejected, &Loop::verdict)}};

@@ -33,6 +33,13 @@ struct Mark {
   std::string name;
 };
 
+/// What was wrong with frames one after the other.
+struct Trouble {
+  std::uint64_t frame = 0;  ///< the newest of them
+  std::uint64_t times = 0;
+  std::string text;
+};
+
 /// A run as somebody sees it who looks from outside, in bounded memory: what is going on, what was
 /// answered, how long it took. Fed with snapshots of a run that goes on, or with the lines of one
 /// that is over. No thread of its own, no lock.
@@ -43,7 +50,8 @@ class RunView {
   static constexpr std::size_t most_frames = 300;     ///< newest ones, whose times are shown
   static constexpr std::size_t most_marks = 1'000;
   static constexpr std::size_t most_name = 80;  ///< bytes of a mark's name
-  static constexpr double patience_s = 10.0;    ///< until it is ill
+  static constexpr std::size_t most_troubles = 20;
+  static constexpr double patience_s = 10.0;  ///< until it is ill
 
   /// @param run what the run was started with: `source`, `method`, `min_probability`, `budget_ms`,
   ///   and so on, as the page of the room `platform/http` lists them
@@ -79,12 +87,14 @@ class RunView {
   [[nodiscard]] const std::optional<Answer>& last_answer() const noexcept { return last_answer_; }
   [[nodiscard]] std::size_t loop_count() const noexcept { return loop_list_.size(); }
   [[nodiscard]] nlohmann::ordered_json& run() noexcept { return run_; }
+  [[nodiscard]] const std::vector<Loop>& loop_list() const noexcept { return loop_list_; }
 
  private:
   struct Shown {
     std::uint64_t number;  ///< of the answer: 0 for the first of all
     Answer answer;
   };
+  void note_trouble(const Snapshot& snapshot);
   [[nodiscard]] nlohmann::ordered_json stages() const;
   [[nodiscard]] static nlohmann::ordered_json row(const Shown& shown);
   [[nodiscard]] double time_of(std::uint64_t frame) const;
@@ -104,6 +114,7 @@ class RunView {
   std::vector<Loop> loop_list_;
   std::uint64_t loops_seen_ = 0;
   std::vector<Mark> marks_;
+  std::deque<Trouble> troubles_;  // newest ones, the newest last
   std::optional<double> frame_at_s_;
   std::optional<double> over_since_s_;
 };

@@ -122,6 +122,7 @@ Serving::Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool
 Serving::~Serving() = default;
 
 Watch& Serving::watch() noexcept { return impl_->watch(); }
+void Serving::keep_in(LastingMap& map) { impl_->site().keep_in(map); }
 void Serving::add_place(const Image& image, std::uint64_t number) {
   impl_->site().add_place(image, number);
 }

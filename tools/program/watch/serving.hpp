@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "program/map/lasting_map.hpp"
 #include "program/options/options.hpp"
 #include "program/watch/watch.hpp"
 
@@ -41,6 +42,9 @@ class Serving {
 
   /// A picture of a place, before the first frame. Allocates: yes.
   void add_place(const Image& image, std::uint64_t number);
+
+  /// The map that the drive is added to, from when it has begun. @param map lives longer
+  void keep_in(LastingMap& map);
 
  private:
   class Impl;

@@ -62,7 +62,7 @@ void Watch::count(const ProcessedFrame& processed, const RunSummary& summary) no
 }
 
 void Watch::publish(const ProcessedFrame& processed, const LoopState& state,
-                    const RunSummary& summary, std::size_t places, Nanoseconds moment) noexcept {
+                    const RunSummary& summary, const MapState& map, Nanoseconds moment) noexcept {
   publish(processed.report.answers);
   count(processed, summary);
   next_.frame = processed;
@@ -76,7 +76,7 @@ void Watch::publish(const ProcessedFrame& processed, const LoopState& state,
   next_.fault.assign({processed.fault});
   next_.remark.assign({processed.frame.remark});
   next_.state = state;
-  next_.places = places;
+  next_.map = map;
   if (!frames_.push(next_)) unseen_.fetch_add(1, std::memory_order_relaxed);
   publish_picture(processed, moment);
 }

@@ -40,6 +40,12 @@ struct RunCounts {
   std::array<StageCounts, stage_names.size()> stages{};
 };
 
+/// How the map stands.
+struct MapState {
+  std::size_t places = 0;
+  std::uint64_t saved = 0;  ///< frames of the drive that are on the disk for good
+};
+
 /// All that is shown of a frame, in fixed memory.
 struct Snapshot {
   ProcessedFrame frame;  ///< without its picture, descriptor, answers and texts
@@ -47,7 +53,7 @@ struct Snapshot {
   FixedText fault;
   FixedText remark;
   RunCounts counts;
-  std::size_t places = 0;  ///< in the map
+  MapState map;
 };
 
 /// A picture on its way to whoever looks: at most this large, every n-th pixel of the loop's own.
@@ -83,7 +89,7 @@ class Watch {
   /// Allocates: never. System calls: none.
   /// @param moment now, on the loop's clock: pictures for who looks come ten times a second
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
-               std::size_t places, Nanoseconds moment) noexcept;
+               const MapState& map, Nanoseconds moment) noexcept;
   /// Answers that were due at the end.
   void publish(std::span<const Answer> answers) noexcept;
 

@@ -58,14 +58,34 @@ function axes({context, width, height}, x0, x1, y1, words) {
   return {x, y};
 }
 
+/// Sessions of the map as bands, every second one shaded.
+function drawSessions({context, width}, sessions, most, y) {
+  const right = width - MARGIN.right;
+  sessions.forEach(({name, first}, i) => {
+    const next = i + 1 < sessions.length ? sessions[i + 1].first : most;
+    const [low, high] = [y(Math.min(first, most)), y(Math.min(next, most))];
+    if (low - high < 1) return;
+    context.globalAlpha = i % 2 ? .5 : .2;
+    context.fillStyle = colour('line');
+    context.fillRect(MARGIN.left, high, right - MARGIN.left, low - high);
+    context.globalAlpha = 1;
+    if (low - high < 16) return;
+    context.fillStyle = colour('soft');
+    context.textAlign = 'right';
+    context.textBaseline = 'top';
+    context.fillText(name, right - 4, high + 3, right - MARGIN.left - 8);
+  });
+}
+
 /// Places over frames. Returns the dots for who points at them.
-function drawPlaces(canvas, answers, ownPlaces, picked, marks) {
+function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions) {
   const area = sized(canvas);
   const matches = answers.filter((one) => one.status === 'match' && one.match !== null);
   const last = answers.reduce((most, one) => Math.max(most, one.frame), 1);
   const most = matches.reduce((far, one) => Math.max(far, one.match), ownPlaces ? last : 1);
   const {x, y} = axes(area, 0, last, most, 'frame');
   const {context} = area;
+  drawSessions(area, sessions, most, y);
   if (ownPlaces) {  // the drive itself: no match lies above this line
     context.strokeStyle = colour('soft');
     context.setLineDash([4, 4]);

@@ -40,6 +40,16 @@ function showStages(status) {
     make('td', {}, budget[name] ? milliseconds(budget[name]) : '–'))));
 }
 
+/// What was wrong with frames, the newest first.
+function showTroubles(troubles) {
+  const texts = troubles.map(({frame, times, text}) =>
+    `frame ${number(frame)}: ${text}` + (times > 1 ? ` (${number(times)} times)` : '')).reverse();
+  byId('troubles').hidden = texts.length === 0;
+  if (byId('troubles').dataset.shown === texts.join('\n')) return;
+  byId('troubles').dataset.shown = texts.join('\n');
+  byId('troubles').replaceChildren(...texts.map((text) => make('li', {}, text)));
+}
+
 function showStatus(status) {
   const {run, counts, frame, map, health} = status;
   const gates = counts.gates;
@@ -60,26 +70,29 @@ function showStatus(status) {
   fillTerms('counts', [['frames', number(counts.frames)], ...['match', 'unsure', 'new_place', 'not_unique', 'no_candidate',
     'warming_up', 'frame_error', 'no_frame'].filter((name) => gates[name] || name === 'match').map((name) => [name, number(gates[name])]),
     ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
-    ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)]]);
+    ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)],
+    ...(run.capture ? [['capture', run.capture]] : []), ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
+  showTroubles(status.troubles);
   const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
   fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
+    ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', number(run.sessions.length)]]),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
     ['k', frame ? number(frame.k) : '–'],
     ['scanned', map.scanned ? number(map.scanned) + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
     ['memory_planned', bytes(run.memory_planned)], ['memory_used', bytes(map.memory_used)],
-    ['method', run.method || '–'], ['ds', number(run.ds)], ...(run.capture ? [['capture', run.capture]] : []),
-    ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
+    ['method', run.method || '–'], ['ds', number(run.ds)]]);
+  if (!report) byId('save').hidden = map.saved === undefined;
   showStages(status);
   if (!report) show('pause', status.state === 'paused' ? 'resume' : 'pause');
 }
 
 // Places are frames of the drive itself, as far as can be told.
-const ownPlaces = () => !view.status.run.reference && view.answers.every((one) => one.match === null || one.match <= one.frame);
+const ownPlaces = () => !view.status.run.reference && !view.status.run.sessions && view.answers.every((one) => one.match === null || one.match <= one.frame);
 
 function draw() {
   const status = view.status;
   const decision = status.run.decision || {};
-  view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks);
+  view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks, status.run.sessions || []);
   drawProbability(byId('probability'), view.answers, decision.min_probability);
   drawTimes(byId('times'), view.frames, (status.run.budget_ms || {}).total);
 }
@@ -129,6 +142,7 @@ function takeToken() {
 }
 function control() {
   byId('pause').onclick = () => change('/api/control', {do: view.status.state === 'paused' ? 'resume' : 'pause'});
+  byId('save').onclick = () => change('/api/control', {do: 'save'});
   byId('stop').onclick = () => { if (confirm('Stop the run?')) change('/api/control', {do: 'stop'}); };
   byId('threshold').onsubmit = (event) => {
     event.preventDefault();

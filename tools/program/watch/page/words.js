@@ -22,6 +22,8 @@ const HELP = {
   overloaded: 'frames under the overload policy',
   unseen: 'frames that went by too fast to be shown here; they are counted all the same',
   places: 'places in the map, and how many it has room for',
+  saved: 'frames of this drive that are on the disk for good',
+  sessions: 'drives in the map, this one among them',
   candidates: 'rows of the map that got a score at this frame',
   distances: 'descriptor distances computed for this frame',
   k: 'candidate ranges in force; 0 where all rows are candidates',

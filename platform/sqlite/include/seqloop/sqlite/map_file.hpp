@@ -53,6 +53,12 @@ struct PlaceRecord {
   bool operator==(const PlaceRecord&) const = default;
 };
 
+/// Where a person has said something of a visit, that stands for its probability; the last word
+/// counts.
+inline constexpr double person_accepted = 2.0;
+inline constexpr double person_rejected = -1.0;
+inline constexpr double person_silent = 0.0;  ///< what was said before is taken back
+
 /// A frame was at a place that the map had already.
 struct SavedLink {
   std::int64_t session = 0;
