@@ -12,6 +12,7 @@ from loop_drives import GARDENS, NORDLAND, Tools, call, say
 
 GARAGE, GARAGE_TRUTH, FIRST_LAP = "garage_laps/images", "garage_laps/truth.csv", 211
 Truth = dict[int, list[int]]  # right places of a frame; none: nothing is right; unlisted: unknown
+Near = dict[int, list[range]]  # frames that another road passes so near that they are right, too
 
 
 def same_frames(count: int, after: int = 0) -> Truth:
@@ -26,6 +27,15 @@ def read_truth(path: pathlib.Path, new: int) -> Truth:
         for row in csv.DictReader(stream):
             truth.setdefault(int(row["query"]), []).append(int(row["reference"]))
     return truth
+
+
+def read_near(path: pathlib.Path) -> Near:
+    near: Near = {}
+    with path.open(encoding="ascii") as stream:
+        for row in csv.DictReader(stream):
+            frames = range(int(row["first"]), int(row["last"]) + 1)
+            near.setdefault(int(row["query"]), []).append(frames)
+    return near
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,19 +55,24 @@ class Maker:
         return self.read(source, source.replace("/", "-"))
 
     def street(self, use: str, frames: int, seed: int) -> tuple[list[np.ndarray], pathlib.Path]:
-        """Descriptors of the drives of a synthetic street, and their truth."""
+        """Descriptors of the drives of a synthetic street, and their truth. With what is near by
+        another road where the drive closes loops."""
         parts = ["reference", "query"] if use == "localise" else ["drive"]
         name = f"street-{use}-{seed}"
         files = [self.out / f"{name}-{part}.npy" for part in parts]
         folder, truth = self.out / f"{name}.pictures", self.out / f"{name}-truth.csv"
-        if not all(file.exists() for file in [*files, truth]):
+        kept = {"truth.csv": truth}
+        if use == "loop":
+            kept["near.csv"] = self.out / f"{name}-near.csv"
+        if not all(file.exists() for file in [*files, *kept.values()]):
             say(f"{name}: drawing")
             jumps = ["--kidnaps", seed % 3] if use == "loop" else []
             call([self.tools.street, "--keep", "--quiet", "--drives", use, "--frames", frames,
                   "--seed", seed, "--out", folder, *jumps])
         drives = [self.read(str(folder / part), file.stem) for part, file in zip(parts, files)]
         if folder.exists():
-            (folder / "truth.csv").replace(truth)
+            for drawn, file in kept.items():
+                (folder / drawn).replace(file)
             shutil.rmtree(folder)
         return drives, truth
 
@@ -68,6 +83,12 @@ class Drive:
     make: Callable[[Maker], tuple[np.ndarray, np.ndarray | None, Truth]]  # query, map, truth
     tolerances: tuple[int, int]  # frames
     needs: tuple[str, ...] = ()  # below the data folder; none: a synthetic street
+    seed: int | None = None  # of a street on which roads meet
+
+    def near(self, maker: Maker) -> Near:
+        """Once it is made."""
+        return {} if self.seed is None else read_near(
+            maker.out / f"street-loop-{self.seed}-near.csv")
 
 
 def localise(query: str, reference: str):
@@ -151,7 +172,7 @@ def all_drives(seeds: list[int]) -> list[Drive]:
                for source in (*GARDENS, *NORDLAND)]
     for seed in seeds:
         drives += [Drive(f"street-{seed}", street(seed, "localise"), (10, 3)),
-                   Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3)),
+                   Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3), seed=seed),
                    Drive(f"street-{seed}-new-summer", street(seed, "localise", 0), (10, 3)),
                    Drive(f"street-{seed}-new-winter", street(seed, "localise", 1), (10, 3))]
     return drives

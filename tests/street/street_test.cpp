@@ -215,6 +215,69 @@ TEST(StreetTruth, NoEarlierVisitIsLeftOut) {
   }
 }
 
+/// Where the camera of a path metre is, seen from another: in steps of a tenth of a metre.
+cv::Point2d seen_from(const Path& path, double from, double to) {
+  const int steps = static_cast<int>(std::ceil(std::fabs(to - from) / 0.1));
+  cv::Point2d at(0.0, 0.0);
+  for (int i = 0; i < steps; ++i) {
+    const double step = (to - from) / steps;
+    const double p = from + step * (i + 0.5);
+    const double heading = path.heading(path.leg_at(p), p);
+    at += step * cv::Point2d(std::cos(heading), std::sin(heading));
+  }
+  return at;
+}
+
+TEST(StreetTruth, NearRowsAreThosePastAJunctionByDistance) {
+  const Street street(3);
+  DrivePlan plan;
+  plan.frames = 520;
+  // A road that joins the first one at its 160th metre, and one that leaves it at its 250th.
+  plan.legs = {{0.0, 300.0, true, false}, {160.0, 90.0, false, true}, {900.0, 130.0, true, true}};
+  const Drive drive(street, plan);
+  constexpr double near = 10.0;
+  std::set<std::pair<std::size_t, std::size_t>> found;
+  for (const NearRow& row : near_truth(drive, near)) {
+    ASSERT_LE(row.first, row.last);
+    for (std::size_t r = row.first; r <= row.last; ++r) {
+      EXPECT_TRUE(found.insert({row.query, r}).second) << row.query << " twice with " << r;
+    }
+  }
+  const auto [joins, leaves] = std::pair(300.0, 390.0);
+  std::size_t pairs = 0;
+  for (std::size_t q = 0; q < drive.frames(); ++q) {
+    for (std::size_t r = 0; r + kLoopAge < q; ++r) {
+      if (std::fabs(drive.street(q) - drive.street(r)) <= 2.0 * near) continue;
+      double least = 1e9;
+      for (const auto& [junction, on_first] : {std::pair(joins, 160.0), std::pair(leaves, 250.0)}) {
+        const double a = drive.position(q);
+        const double b = drive.position(r);
+        if (std::fabs(a - junction) > 100.0 || std::fabs(b - on_first) > 100.0) continue;
+        // Far along one road and near along the other cannot be near.
+        if (std::fabs((a - junction) - (b - on_first)) > 4.0 * near) continue;
+        const Path& path = drive.path();
+        const double turn = path.heading(path.leg_at(a), a) - path.heading(path.leg_at(b), b);
+        if (std::fabs(wrap_angle(turn)) > 0.785) continue;
+        least =
+            std::min(least, cv::norm(seen_from(path, junction, a) - seen_from(path, on_first, b)));
+      }
+      if (std::fabs(least - near) < 0.1) continue;  // either way
+      pairs += least < near ? 1U : 0U;
+      EXPECT_EQ(found.contains({q, r}), least < near) << q << " and " << r << ": " << least;
+    }
+  }
+  EXPECT_GT(pairs, 200U);
+}
+
+TEST(StreetTruth, NothingIsNearAcrossAKidnapOrOnOneRoad) {
+  DrivePlan plan;
+  plan.frames = 500;
+  plan.legs = {{0.0, 300.0, true, false}, {40.0, 200.0, false, false}};
+  EXPECT_TRUE(near_truth(Drive(Street(3), plan), 10.0).empty());
+  EXPECT_TRUE(near_truth(reference_of(small_job(300, 4)), 10.0).empty());
+  EXPECT_TRUE(near_truth(loop_of(small_job(1, 4, "loop")), 10.0).empty());
+}
+
 TEST(StreetTruth, KidnapsAreAsManyAsAskedFor) {
   for (const std::size_t kidnaps : {0U, 1U, 2U, 3U}) {
     const Drive drive = loop_of(small_job(1500, 7, "loop", kidnaps));

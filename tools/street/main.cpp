@@ -82,6 +82,8 @@ int run(const Options& options, const Job& job) {
     const Drive drive(street, loop_plan(job));
     render_drive(drive, "drive", job, folder, progress);
     write_truth(folder / "truth.csv", loop_truth(drive));
+    constexpr double kNear = 10.0;  // metres
+    write_near(folder / "near.csv", near_truth(drive, kNear));
     write_poses(folder / "drive.csv", drive);
   }
   staging.commit(job.parameters);

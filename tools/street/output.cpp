@@ -114,6 +114,15 @@ void write_truth(const fs::path& file, const std::vector<TruthRow>& rows) {
   write_file(file, text);
 }
 
+void write_near(const fs::path& file, const std::vector<NearRow>& rows) {
+  std::string text = "query,first,last\n";
+  for (const NearRow& row : rows) {
+    text += std::to_string(row.query) + ',' + std::to_string(row.first) + ',' +
+            std::to_string(row.last) + '\n';
+  }
+  write_file(file, text);
+}
+
 void write_poses(const fs::path& file, const Drive& drive) {
   std::string text = "frame,street_m,left_m,height_m,yaw_rad,pitch_rad,roll_rad\n";
   for (std::size_t i = 0; i < drive.frames(); ++i) {

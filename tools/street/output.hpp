@@ -31,6 +31,9 @@ std::unique_ptr<FrameSink> open_sink(const std::filesystem::path& folder, const 
 /// Writes query,reference rows below a header.
 void write_truth(const std::filesystem::path& file, const std::vector<TruthRow>& rows);
 
+/// Writes query,first,last rows below a header.
+void write_near(const std::filesystem::path& file, const std::vector<NearRow>& rows);
+
 /// Writes where the camera of each frame was: metres along the street, to the left of its middle
 /// and above it; radians left of its direction, up, and clockwise.
 void write_poses(const std::filesystem::path& file, const Drive& drive);
