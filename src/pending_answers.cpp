@@ -247,9 +247,12 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
   };
   // The line through the frame itself, or the nearest one that reaches it; one whose window lies on
   // the trace from end to end, if there is any. Otherwise, and where hardly anything changes, rows
-  // side by side have lines that are as good as each other: the trace knows the row better.
+  // side by side have lines that are as good as each other: the trace knows the row better. A line
+  // that does worse than one elsewhere comes after those that do not.
   const bool stands = hardly_changes(belief, frame);
-  for (const bool whole : {true, false}) {
+  enum class Line { best, whole, any };
+  for (const Line wanted : {Line::best, Line::whole, Line::any}) {
+    const bool whole = wanted != Line::any;
     for (std::uint64_t off = 0; off <= trajectories_->window() / 2; ++off) {
       for (const bool after : {true, false}) {
         if (!after && (off == 0 || frame < off)) continue;
@@ -257,6 +260,7 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
         if (other >= end_ || (after && off > trajectories_->centre())) continue;
         const auto line = line_near(map, other);
         if (!line || (whole && !lies_on_trace(order, other))) continue;
+        if (wanted == Line::best && margin(map, other, line->row) < 0.0) continue;
         const auto offsets = trajectories_->offsets(line->line);
         const bool by_line = whole && !stands;
         const std::size_t from = by_line ? line->row : at(frame).row;
