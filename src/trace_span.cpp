@@ -9,8 +9,8 @@ namespace seqloop {
 namespace {
 
 // Chances of a frame: a trace begins, or ends.
-constexpr double begins = 0.003;
-constexpr double ends = 0.003;
+constexpr double begins = 0.01;
+constexpr double ends = 0.001;
 
 /// How likely the frames that follow are, by where the robot is.
 struct Backward {

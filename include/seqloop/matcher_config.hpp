@@ -112,7 +112,7 @@ struct MatcherConfig {
   float min_probability = 0.99F;  ///< a match must be at least this probable; above 0 .. 1
   /// Frames that come after a frame before its answer is due at the latest; 0 .. 1,000. Each keeps
   /// a descriptor and what is believed.
-  std::size_t patience = 60;
+  std::size_t patience = 120;
   /// By uniqueness: a match must be at least this unique; above 0 .. 1
   float max_uniqueness = 0.94F;
 

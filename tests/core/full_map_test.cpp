@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <span>
 
 #include "core/matcher.hpp"
 #include "core/shown_drive.hpp"
@@ -136,18 +137,21 @@ TEST_P(FullMaps, ThinningKeepsTheWayAndDropsTheHalts) {
   std::size_t right = 0;
   std::size_t answers = 0;
   const oracle::Vectors again = oracle::drive(12, length, 64, 0.4F);
-  for (std::size_t at = 0; at < length; ++at) {
-    const FrameReport report = detector.step(again[at]);
-    drive.way.push_back(at);
-    if (at < 30) continue;
-    for (const Answer& answer : report.answers) {
+  const auto judge = [&](std::span<const Answer> due) {
+    for (const Answer& answer : due) {
       if (answer.gate != Gate::match) continue;
       ++answers;
       const std::size_t found = drive.way[answer.match->place];
       const std::size_t truth = drive.way[static_cast<std::size_t>(answer.frame)];
       right += std::max(found, truth) - std::min(found, truth) <= 2;
     }
+  };
+  for (std::size_t at = 0; at < length; ++at) {
+    const FrameReport report = detector.step(again[at]);
+    drive.way.push_back(at);
+    if (at >= 30) judge(report.answers);
   }
+  judge(detector.finish());
   std::printf("%zu of %zu right\n", right, answers);
   EXPECT_GT(answers, 200U);
   EXPECT_GE(right, answers * 95 / 100);

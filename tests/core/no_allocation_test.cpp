@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A step takes no memory, and the guard that says so can fail.
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 
@@ -32,6 +33,11 @@ TEST_F(NoAllocation, TheGuardFires) {
   EXPECT_EQ(guard.count(), 4U);
 }
 
+std::size_t matches(const FrameReport& report) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      report.answers, [](const Answer& answer) { return answer.match.has_value(); }));
+}
+
 TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
   const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
   for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {
@@ -53,9 +59,9 @@ TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
         const AllocationGuard guard;
         for (int repeat = 0; repeat < 2; ++repeat) {
           for (const auto& descriptor : lap) {
-            matched += detector.step(descriptor).match.has_value();
+            matched += matches(detector.step(descriptor));
           }
-          matched += detector.step({}).match.has_value();
+          matched += matches(detector.step({}));
           detector.skip(7);
           detector.skip(1000);
         }
@@ -97,9 +103,9 @@ TEST_F(NoAllocation, WhenAFullMapMakesRoom) {
         const AllocationGuard guard;
         for (int repeat = 0; repeat < 3; ++repeat) {
           for (const auto& descriptor : lap) {
-            matched += detector.step(descriptor).match.has_value();
+            matched += matches(detector.step(descriptor));
           }
-          matched += detector.step({}).match.has_value();
+          matched += matches(detector.step({}));
           detector.skip(7);
         }
         EXPECT_EQ(guard.count(), 0U);

@@ -253,6 +253,8 @@ TEST(PlaceBeliefOracle, WhereTheRobotStandsAndIsCarried) {
 
 /// All the ways in which a trace may begin and end, one by one.
 TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
+  constexpr double begins = 0.01;
+  constexpr double ends = 0.001;
   TestArena memory;
   TraceSpan span(memory.arena, 40);
   std::mt19937 random(7);
@@ -275,8 +277,8 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
         chance *= std::exp(step.gain - usual * std::max(step.novelty, 0.3));
       }
       const bool goes_on = last == frames;
-      const double stays = chance * (goes_on ? 1.0 : 0.003);
-      const double leaves = chance * 0.003;
+      const double stays = chance * (goes_on ? 1.0 : ends);
+      const double leaves = chance * ends;
       all_still += stays;
       all_left += leaves;
       for (std::size_t i = first; i < last; ++i) {
@@ -285,15 +287,15 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
       }
     };
     for (std::size_t first = 0; first < frames; ++first) {
-      const double begun =
-          first == 0 ? 1.0
-                     : (1.0 - before) * 0.003 * std::pow(0.997, static_cast<double>(first - 1));
+      const double begun = first == 0 ? 1.0
+                                      : (1.0 - before) * begins *
+                                            std::pow(1.0 - begins, static_cast<double>(first - 1));
       for (std::size_t last = first + 1; last <= frames; ++last) {
-        take(first, last, begun * std::pow(0.997, static_cast<double>(last - first - 1)));
+        take(first, last, begun * std::pow(1.0 - ends, static_cast<double>(last - first - 1)));
       }
     }
     // Or the robot never came onto it.
-    all_still += (1.0 - before) * std::pow(0.997, static_cast<double>(frames - 1));
+    all_still += (1.0 - before) * std::pow(1.0 - begins, static_cast<double>(frames - 1));
     for (std::size_t i = 0; i < frames; ++i) {
       EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
       EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);

@@ -146,8 +146,9 @@ TEST(PlaceBelief, ACarriedRobotLosesItsBeliefAndFindsItself) {
     const auto off = static_cast<int>(answer.match->place) - static_cast<int>(there);
     if (std::abs(off) > 10) ++wrong;
   }
-  EXPECT_LE(wrong, 3U) << "of the 40 jumps one: the next way's rows look alike for 3 frames before";
-  EXPECT_GT(accepted(said), query.size() * 2 / 3);
+  std::printf("%zu accepted of %zu, %zu wrong\n", accepted(said), query.size(), wrong);
+  EXPECT_LE(wrong, 1U) << "after one of 40 jumps the row before it lives on for a frame";
+  EXPECT_GT(accepted(said), query.size() * 7 / 10);
 }
 
 TEST(PlaceBelief, ACoveredLensSaysNothing) {
