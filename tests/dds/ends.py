@@ -180,10 +180,10 @@ def gardens(seqloop: str, fast_end: pathlib.Path, shared: pathlib.Path, work: pa
         run = Run(seqloop, work, "--reference", places)
         publisher = ros.Publisher(fast_end, TOPIC, message_type, reliable)
         publisher.wait_until_heard()
-        # Stamped with when they are due, half a second from now on, so that their ages are those of a camera's.
-        heard, delay = time.time_ns(), 0.5
+        # Stamped with when they are due, so that their ages are those of a camera's.
+        delay = 1.0
         for i, data in enumerate(raw):
-            at = heard + int((delay + i / rate) * SECOND)
+            at = publisher.start_ns + int((delay + i / rate) * SECOND)
             publisher.send(ros.image(at, 640, 480, "rgb8", 1920, data) if kind == "png"
                            else ros.compressed_image(at, data), delay + i / rate)
         expect(publisher.end() == "", "Fast DDS published all")

@@ -75,6 +75,7 @@ class Publisher:
     def wait_until_heard(self) -> None:
         line = self.process.stderr.readline()
         assert line == b"heard\n", line
+        self.start_ns = time.time_ns()  # from which on it counts when messages are due
         time.sleep(0.5)  # the other side may know of it a little later
 
     def send(self, message: bytes, due_s: float = 0.0) -> None:
