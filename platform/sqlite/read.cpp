@@ -232,6 +232,43 @@ std::optional<SavedThumbnail> MapFile::thumbnail(std::uint64_t place) const {
   });
 }
 
+std::vector<std::uint64_t> MapFile::thumbnails_around(std::uint64_t place) const {
+  return state_->reading([&] {
+    std::vector<std::int64_t> near;
+    Statement before(state_->database,
+                     "SELECT place FROM thumbnail WHERE place <= ? ORDER BY place DESC LIMIT 2");
+    before.with(static_cast<std::int64_t>(place));
+    while (before.step()) near.insert(near.begin(), before.integer(0));
+    const std::size_t after_at = near.size();
+    Statement after(state_->database,
+                    "SELECT place FROM thumbnail WHERE place > ? ORDER BY place LIMIT 2");
+    after.with(static_cast<std::int64_t>(place));
+    while (after.step()) near.push_back(after.integer(0));
+    // Of two before and two after, one at an end is too far.
+    const auto far = [&](std::size_t at) {
+      return near[at] < static_cast<std::int64_t>(place)
+                 ? static_cast<std::int64_t>(place) - near[at]
+                 : near[at] - static_cast<std::int64_t>(place);
+    };
+    std::size_t at = after_at == 0 ? 0 : after_at - 1;
+    if (after_at != 0 && after_at < near.size() && far(after_at) < far(at)) at = after_at;
+    std::vector<std::uint64_t> numbers;
+    for (std::size_t i = at == 0 ? 0 : at - 1; i < near.size() && i <= at + 1; ++i) {
+      numbers.push_back(static_cast<std::uint64_t>(near[i]));
+    }
+    return numbers;
+  });
+}
+
+ThumbnailFacts MapFile::thumbnail_facts() const {
+  return state_->reading([&] {
+    Statement row(state_->database, "SELECT count(*), total(length(jpeg)) FROM thumbnail");
+    (void)row.step();
+    return ThumbnailFacts{static_cast<std::uint64_t>(row.integer(0)),
+                          static_cast<std::uint64_t>(row.real(1))};
+  });
+}
+
 std::vector<std::string> MapFile::check() const {
   std::vector<std::string> wrong;
   const auto look = [&wrong](const auto& part) {

@@ -54,8 +54,8 @@ void MapFile::forget(const std::string& session) {
     (void)drop("removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
     map.counts.thumbnails -=
         drop("thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
-    map.counts.links -= drop("link WHERE session = ? OR other BETWEEN ? AND ?", found->id,
-                             numbers.first, numbers.last);
+    // Links of other sessions to its places stay: they say which of theirs are visits of one place.
+    map.counts.links -= drop("link WHERE session = ?", found->id);
     (void)drop("block WHERE session = ?", found->id);
     (void)drop("statistics WHERE session = ?", found->id);
     (void)drop("session WHERE id = ?", found->id);

@@ -45,19 +45,22 @@ void MapFile::State::insert_block(std::int64_t session, std::span<const PlaceRec
 }
 
 void MapFile::State::remove_place(std::int64_t number) {
-  Statement find(database, std::string(block_columns) +
-                               "FROM block WHERE first <= ? ORDER BY first DESC LIMIT 1");
+  // Not the places: a block may have 4 MB of them, and most removals do without.
+  Statement find(database,
+                 "SELECT first, session, records FROM block WHERE first <= ? "
+                 "ORDER BY first DESC LIMIT 1");
   if (!find.with(number).step()) return;
-  const BlockRow row = block_row(find);
-  if (row.records.size() % record_bytes != 0 || row.records.empty()) return;
-  const std::vector<PlaceRecord> records = decode_records(row.records);
+  const std::int64_t first = find.integer(0);
+  const std::int64_t owner_id = find.integer(1);
+  if (find.blob(2).size() % record_bytes != 0 || find.blob(2).empty()) return;
+  const std::vector<PlaceRecord> records = decode_records(find.blob(2));
   const auto is_it = [number](const PlaceRecord& r) { return signed_of(r.number) == number; };
   if (std::ranges::none_of(records, is_it)) return;
   Statement(database, "INSERT OR IGNORE INTO removed VALUES(?, ?)")
       .with(number, row_checksum("removed", number))
       .run();
   if (sqlite3_changes(database.handle()) == 0) return;
-  SessionFacts owner = session(row.session);
+  SessionFacts owner = session(owner_id);
   --owner.places;
   save_session(owner);
   Statement(database, "DELETE FROM thumbnail WHERE place = ?").with(number).run();
@@ -67,12 +70,15 @@ void MapFile::State::remove_place(std::int64_t number) {
   // place is copied about once.
   const std::int64_t last = signed_of(records.back().number);
   Statement gone_rows(database, "SELECT place FROM removed WHERE place BETWEEN ? AND ?");
-  gone_rows.with(row.first, last);
+  gone_rows.with(first, last);
   std::vector<std::int64_t> gone;
   while (gone_rows.step()) gone.push_back(gone_rows.integer(0));
   if (gone.size() * 2 < records.size()) return;
-  if (!row.whole(form))
-    throw SetupError(damaged("the block from place " + std::to_string(row.first)));
+  find.with(std::int64_t{-1});
+  Statement whole(database, std::string(block_columns) + "FROM block WHERE first = ?");
+  (void)whole.with(first).step();
+  const BlockRow row = block_row(whole);
+  if (!row.whole(form)) throw SetupError(damaged("the block from place " + std::to_string(first)));
   std::vector<PlaceRecord> left;
   std::vector<std::byte> bytes;
   const auto size = static_cast<std::size_t>(form.place_bytes);
@@ -82,12 +88,10 @@ void MapFile::State::remove_place(std::int64_t number) {
     const std::span<const std::byte> place = row.places.subspan(i * size, size);
     bytes.insert(bytes.end(), place.begin(), place.end());
   }
-  const std::int64_t first = row.first;
-  find.with(std::int64_t{-1});
+  whole.with(std::int64_t{-1});
   Statement(database, "DELETE FROM block WHERE first = ?").with(first).run();
   Statement(database, "DELETE FROM removed WHERE place BETWEEN ? AND ?").with(first, last).run();
   if (!left.empty()) insert_block(owner.id, left, bytes);
-  return;
 }
 
 std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_ns,
@@ -137,13 +141,14 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
             .run();
       }
     }
-    for (const SavedThumbnail& picture : batch.thumbnails) {
-      const std::span<const std::byte> jpeg = picture.jpeg;
-      const std::int64_t place = signed_of(picture.place);
-      Statement(map.database, "INSERT OR IGNORE INTO thumbnail VALUES(?, ?, ?)")
-          .with(place, jpeg, row_checksum("thumbnail", place, jpeg))
-          .run();
-      map.counts.thumbnails += sqlite3_changes(map.database.handle());
+    if (!batch.thumbnails.empty()) {
+      Statement insert(map.database, "INSERT OR IGNORE INTO thumbnail VALUES(?, ?, ?)");
+      for (const SavedThumbnail& picture : batch.thumbnails) {
+        const std::span<const std::byte> jpeg = picture.jpeg;
+        const std::int64_t place = signed_of(picture.place);
+        insert.with(place, jpeg, row_checksum("thumbnail", place, jpeg)).run();
+        map.counts.thumbnails += sqlite3_changes(map.database.handle());
+      }
     }
     facts.frames = batch.frames;
     facts.places += batch.records.size();

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/oracle.hpp"
+#include "platform/pictures.hpp"
 #include "program/program.hpp"
 #include "seqloop/files/npy_file.hpp"
 
@@ -94,6 +95,34 @@ TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
   EXPECT_NE(full.out.find("\"newest\":119,"), std::string::npos) << "the run went on";
   // What had been saved is there, and the rest has room again.
   expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
+}
+
+TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
+  std::filesystem::create_directory(file("drive"));
+  for (std::uint64_t n = 0; n < 40; ++n) {
+    folder_.write("drive/" + std::to_string(n) + ".png",
+                  test::encoded(test::textured(96, 64, n + 1), ".png"));
+  }
+  expect_done("run --source drive --map with.seqloop --session one --out with.jsonl");
+  expect_done("run --source drive --map without.seqloop --thumbnails off --out without.jsonl");
+  const auto info = [&](const std::string& name) {
+    return nlohmann::json::parse(run("map info " + name + " --json").out);
+  };
+  EXPECT_EQ(info("with.seqloop")["places"], 40);
+  EXPECT_EQ(info("with.seqloop")["thumbnails"], 40);
+  EXPECT_GT(info("with.seqloop")["thumbnail_bytes"], 40 * 200);
+  EXPECT_EQ(info("without.seqloop")["thumbnails"], 0);
+  expect_done("map check with.seqloop");
+  expect_done("run --source drive --map with.seqloop --session two --out again.jsonl");
+  EXPECT_EQ(info("with.seqloop")["thumbnails"], 80);
+  expect_done("map export with.seqloop --out exported");
+  for (const char* name : {"exported/thumbnail-0.jpg", "exported/thumbnail-79.jpg"}) {
+    const cv::Mat picture = cv::imread(file(name), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(picture.cols, 48) << name << ": every other pixel of 96";
+    EXPECT_EQ(picture.rows, 32) << name;
+  }
+  expect_done("map forget with.seqloop one");
+  EXPECT_EQ(info("with.seqloop")["thumbnails"], 40);
 }
 
 TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {

@@ -86,7 +86,7 @@ class Settings(unittest.TestCase):
         shown = program("match", "--help-all").stdout
         flags = {line.split()[0][2:].replace("-", "_") for line in shown.splitlines() if line.strip().startswith("--")}
         others = {"reference", "query", "out", "config", "help_all", "version"}
-        others |= {"map", "read_only", "session", "save_every_s"}  # of PlaceMap.open alone
+        others |= {"map", "read_only", "session", "save_every_s", "grow"}  # of PlaceMap.open alone
         self.assertEqual(set(seqloop.settings()), flags - others)
         shown = program("describe", "--help-all").stdout
         for name in seqloop.Describer.settings():

@@ -9,6 +9,7 @@
 
 #include "core/oracle.hpp"
 #include "http/client.hpp"
+#include "platform/pictures.hpp"
 #include "program/program.hpp"
 #include "seqloop/files/npy_file.hpp"
 
@@ -32,12 +33,11 @@ class Serve : public test::Program {
 
   /// Starts a run that is served, and waits until it is.
   void start(const std::string& arguments) {
-    const std::string command =
-        "cd '" + folder_.path().string() +
-        "' && { '" SEQLOOP_BINARY
-        "' run --source q.npy --exclude 20 --serve 127.0.0.1:0 --serve-token "
-        "token --out r.jsonl " +
-        arguments + "; echo $? >code.txt; } 2>err.txt </dev/null &";
+    const std::string command = "cd '" + folder_.path().string() +
+                                "' && { '" SEQLOOP_BINARY
+                                "' run --exclude 20 --serve 127.0.0.1:0 --serve-token "
+                                "token --out r.jsonl " +
+                                arguments + "; echo $? >code.txt; } 2>err.txt </dev/null &";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const std::string sign = "serving on http://127.0.0.1:";
     for (int n = 0; n < 1200 && port_ == 0; ++n) {
@@ -100,7 +100,7 @@ class Serve : public test::Program {
 };
 
 TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
-  start("--pace live --fps 40 --budget-total 10000 --min-probability 1");
+  start("--source q.npy --pace live --fps 40 --budget-total 10000 --min-probability 1");
   ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 5; }));
   ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
   ASSERT_TRUE(until([](const Json& status) { return status["state"] == "paused"; }));
@@ -173,7 +173,7 @@ TEST_F(Serve, AMapThatLastsIsSavedWhenAskedAndKeepsWhatAPersonSaid) {
 
 TEST_F(Serve, AnswersAreTheSameWhoeverLooks) {
   ASSERT_EQ(run("run --source q.npy --exclude 20 --out alone.jsonl").exit_code, 0);
-  start("");
+  start("--source q.npy");
   std::vector<std::unique_ptr<http::test::Client>> clients;
   for (int n = 0; n < 10; ++n) {
     clients.push_back(std::make_unique<http::test::Client>(port_));
@@ -183,6 +183,27 @@ TEST_F(Serve, AnswersAreTheSameWhoeverLooks) {
   }
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
   EXPECT_EQ(lines("r.jsonl"), lines("alone.jsonl"));
+}
+
+TEST_F(Serve, ShowsPlacesOfEarlierSessions) {
+  if (SEQLOOP_MAPS == 0) GTEST_SKIP() << "this build keeps no maps in files";
+  std::filesystem::create_directory(file("drive"));
+  for (std::uint64_t n = 0; n < 40; ++n) {
+    folder_.write("drive/" + std::to_string(n) + ".png",
+                  test::encoded(test::textured(96, 64, n + 1), ".png"));
+  }
+  ASSERT_EQ(run("run --source drive --map m.seqloop --out first.jsonl").exit_code, 0);
+  start("--source drive --map m.seqloop --pace live --fps 20 --budget-total 10000");
+  const std::string picture = get("/api/picture?of=place&number=7");
+  EXPECT_TRUE(picture.starts_with("HTTP/1.1 200")) << picture.substr(0, 300);
+  EXPECT_NE(picture.find("\r\n\r\n\xFF\xD8"), std::string::npos) << "JPEG";
+  EXPECT_EQ(json(get("/api/pictures?place=7"))["place"], Json({6, 7, 8}));
+  EXPECT_TRUE(get("/api/picture?of=place&number=9999").starts_with("HTTP/1.1 404"));
+  ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 5; }));
+  EXPECT_TRUE(get("/api/picture?of=frame&number=0").starts_with("HTTP/1.1 200"))
+      << "the drive's own";
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  EXPECT_EQ(run("map check m.seqloop").exit_code, 0) << "who looks damages nothing";
 }
 
 TEST_F(Serve, TellsWhatIsWrongBeforeAnyWork) {

@@ -60,7 +60,8 @@ class Stepper {
       if (file != nullptr) {
         const std::uint64_t frame = report.report.newest;
         file->note(*detector_, frame, frame,
-                   time_s.value_or(static_cast<double>(frame) / frames_a_second), report.answers);
+                   time_s.value_or(static_cast<double>(frame) / frames_a_second), {},
+                   report.answers);
         trouble = file->trouble();
       }
     }
@@ -182,7 +183,8 @@ PYBIND11_MODULE(_core, module) {
           "what\n"
           "was described alike can be compared.\n"
           "read_only: localise in it, and leave it as it is. session: name of this drive, when it\n"
-          "began by default. save_every_s: seconds of driving that may be unsaved, 1.\n"
+          "began by default. save_every_s: seconds of driving that may be unsaved, 1. grow:\n"
+          "'novel', sessions of which later ones have seen enough go, or 'all' stay.\n"
           "settings: as seqloop.settings() lists them.\n"
           "Errors: SetupError: held by another process, of another form, damaged, no space, …")
       .def("where", &Map::where, py::arg("place"),

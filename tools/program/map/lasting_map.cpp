@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -14,12 +15,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Thumbnails in a file that somebody may be writing just now.
+class SavedPictures : public PlacePictures {
+ public:
+  explicit SavedPictures(std::filesystem::path file) : file_(std::move(file)) {}
+
+  [[nodiscard]] std::vector<std::uint64_t> around(std::uint64_t place) const override {
+    return sqlite::MapFile::read_only(file_).thumbnails_around(place);
+  }
+
+  [[nodiscard]] std::string jpeg(std::uint64_t place) const override {
+    const auto saved = sqlite::MapFile::read_only(file_).thumbnail(place);
+    if (!saved) return {};
+    std::string bytes(saved->jpeg.size(), '\0');
+    std::ranges::transform(saved->jpeg, bytes.begin(),
+                           [](std::byte byte) { return static_cast<char>(byte); });
+    return bytes;
+  }
+
+ private:
+  // Opened for each look: as long as somebody reads, the log beside the map grows.
+  std::filesystem::path file_;
+};
+
 class SqliteMap : public LastingMap {
  public:
   SqliteMap(const MapSettings& settings, const MatcherConfig& config, std::size_t descriptor_size,
-            std::string describer)
+            std::string describer, JpegEncoder encode)
       : stored_(settings, config, descriptor_size, std::move(describer)),
-        save_every_s_(settings.save_every_s) {}
+        settings_(settings),
+        encode_(encode) {}
 
   [[nodiscard]] std::size_t places() const noexcept override { return stored_.places(); }
 
@@ -36,12 +61,12 @@ class SqliteMap : public LastingMap {
     map_ = &map;
     if (stored_.read_only()) return;
     stored_.begin_session(method);
-    writer_.emplace(stored_, map, config, save_every_s_);
+    writer_.emplace(stored_, map, config, settings_, encode_);
   }
 
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-            std::span<const Answer> answers) noexcept override {
-    if (writer_) writer_->note(detector, counted, index, time_s, answers);
+            const Image& image, std::span<const Answer> answers) noexcept override {
+    if (writer_) writer_->note(detector, counted, index, time_s, image, answers);
   }
 
   [[nodiscard]] std::optional<std::string> finish(Detector& detector,
@@ -85,6 +110,10 @@ class SqliteMap : public LastingMap {
     return seen;
   }
 
+  [[nodiscard]] std::unique_ptr<PlacePictures> pictures() const override {
+    return std::make_unique<SavedPictures>(stored_.path());
+  }
+
   void add_to(Json& frame) const override {
     for (Json& answer : frame["answers"]) name_place(answer, "match");
     name_place(frame, "match");
@@ -94,8 +123,16 @@ class SqliteMap : public LastingMap {
 
   [[nodiscard]] std::string summary() const override {
     if (!writer_) return fmt::format("the map has {} places; it was only read", map_->size());
-    return fmt::format("the map has {} places now; {} frames are saved, {} of them as places",
-                       map_->size(), writer_->saved(), writer_->saved_places());
+    std::string text =
+        fmt::format("the map has {} places now; {} frames are saved, {} of them as places",
+                    map_->size(), writer_->saved(), writer_->saved_places());
+    for (const std::string& name : writer_->forgotten()) {
+      text += fmt::format("; '{}' went, since what it saw was seen often enough later", name);
+    }
+    if (const auto missing = writer_->missing_thumbnails(); missing > 0) {
+      text += fmt::format("; there was no room for {} thumbnails", missing);
+    }
+    return text;
   }
 
  private:
@@ -110,7 +147,8 @@ class SqliteMap : public LastingMap {
   }
 
   StoredMap stored_;
-  double save_every_s_;
+  MapSettings settings_;
+  JpegEncoder encode_;
   const PlaceMap* map_ = nullptr;
   std::optional<MapWriter> writer_;
 };
@@ -118,8 +156,10 @@ class SqliteMap : public LastingMap {
 }  // namespace
 
 std::unique_ptr<LastingMap> open_map(const MapSettings& settings, const MatcherConfig& config,
-                                     std::size_t descriptor_size, std::string describer) {
-  return std::make_unique<SqliteMap>(settings, config, descriptor_size, std::move(describer));
+                                     std::size_t descriptor_size, std::string describer,
+                                     JpegEncoder encode) {
+  return std::make_unique<SqliteMap>(settings, config, descriptor_size, std::move(describer),
+                                     encode);
 }
 
 }  // namespace seqloop::program

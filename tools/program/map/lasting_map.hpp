@@ -10,8 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "program/drives/small_picture.hpp"
 #include "program/map/map_settings.hpp"
+#include "program/map/place_pictures.hpp"
 #include "seqloop/detector.hpp"
+#include "seqloop/frame.hpp"
 
 namespace seqloop::program {
 
@@ -41,9 +44,10 @@ class LastingMap {
 
   /// What the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
+  /// @param image its picture, where there is one
   /// Allocates: never; no system call.
   virtual void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-                    std::span<const Answer> answers) noexcept = 0;
+                    const Image& image, std::span<const Answer> answers) noexcept = 0;
 
   /// The drive is over: saves the rest, however long that takes.
   /// @return why something could not be saved; nothing when all is
@@ -83,6 +87,9 @@ class LastingMap {
   /// @param number of a place that the map has or had
   [[nodiscard]] virtual Seen where(std::uint64_t number) const = 0;
 
+  /// Pictures of its places, as far as they are saved; may be asked after the map has gone.
+  [[nodiscard]] virtual std::unique_ptr<PlacePictures> pictures() const = 0;
+
   /// Says in what `run` says of a frame how much is saved, and of which session places are.
   virtual void add_to(nlohmann::ordered_json& frame) const = 0;
 
@@ -91,10 +98,12 @@ class LastingMap {
 };
 
 /// @param describer what describes the drive: only what was described alike can be compared
+/// @param encode makes thumbnails, where the settings want any; null: there are no pictures
 /// Throws SetupError, also where this build has no maps in files.
 [[nodiscard]] std::unique_ptr<LastingMap> open_map(const MapSettings& settings,
                                                    const MatcherConfig& config,
                                                    std::size_t descriptor_size,
-                                                   std::string describer);
+                                                   std::string describer,
+                                                   JpegEncoder encode = nullptr);
 
 }  // namespace seqloop::program

@@ -1,7 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "program/map/map_settings.hpp"
 
+#include <stdexcept>
+
 namespace seqloop::program {
+namespace {
+
+/// @return whether superseded sessions go
+bool parse_grow(std::string_view text) {
+  if (text == "novel") return true;
+  if (text == "all") return false;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither all nor novel");
+}
+
+}  // namespace
 
 void add_map_options(OptionTable& options, MapSettings& settings) {
   options.section("Map");
@@ -11,8 +23,18 @@ void add_map_options(OptionTable& options, MapSettings& settings) {
   options.flag("read-only", settings.read_only, "localise in the map, and leave it as it is");
   options.text("session", settings.session, "name of the drive in the map [when it began]");
   options.section("Map", Shown::in_help_all);
+  options.add({"grow", ValueKind::text,
+               "novel: of what was seen again in many later sessions, the oldest go; all: none "
+               "goes [novel]",
+               [&settings](std::string_view value) { settings.novel = parse_grow(value); }});
   options.number("save-every-s", settings.save_every_s,
                  "seconds of driving that may not be saved yet [1]");
+}
+
+void add_thumbnail_option(OptionTable& options, MapSettings& settings) {
+  options.section("Map", Shown::in_help_all);
+  options.on_off("thumbnails", settings.thumbnails,
+                 "keep a small picture of each place in the map [on]");
 }
 
 void check(const MapSettings& settings, bool reference, Faults& faults) {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "program/map/superseded.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -17,6 +19,13 @@ constexpr std::uint64_t most_at_once = 4096;
 // Rows between two that are linked are linked as well, so many at most.
 constexpr std::size_t most_between = 40;
 
+// Saving that takes longer is told.
+constexpr std::int64_t patience_ns = 2'000'000'000;
+
+std::int64_t steady_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 std::int64_t nanoseconds(double seconds) {
   constexpr double in_a_second = 1e9;
   return static_cast<std::int64_t>(std::llround(seconds * in_a_second));
@@ -25,29 +34,33 @@ std::int64_t nanoseconds(double seconds) {
 }  // namespace
 
 MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
-                     double every_s)
+                     const MapSettings& settings, JpegEncoder encode)
     : stored_(&stored),
       map_(&map),
       settled_after_(config.patience + most_between + config.sequence_length),
-      first_number_(map.order().next_number()),
-      next_number_(first_number_),
+      next_number_(map.order().next_number()),
       came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
             MatcherConfig::most_frames_at_once + 2),
       source_frames_(map.capacity()),
+      numbers_(map.capacity(), none),
+      linked_(map.capacity(), none),
+      novel_(settings.novel),
       added_(map.capacity()),
       links_(map.capacity()) {
   if (config.standardisation.on) {
     handed_.mean.resize(map.descriptor_size());
     handed_.variance.resize(map.descriptor_size());
   }
-  if (config.full_map != FullMap::refuse) {
-    for (std::size_t row = 0; row < map.size(); ++row) earlier_.push_back(map.order().number(row));
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    numbers_[map.order().slot(row)] = map.order().number(row);
   }
   const auto batch = static_cast<std::size_t>(std::min<std::uint64_t>(most_at_once, added_.size()));
+  if (settings.thumbnails && encode != nullptr) thumbnails_.emplace(encode);
   bytes_.reserve(batch * map.rows().saved_size());
   records_.reserve(batch);
   batch_links_.reserve(batch);
-  thread_ = std::thread([this, every_s] { work(every_s); });
+  removed_.reserve(batch);
+  thread_ = std::thread([this, every_s = settings.save_every_s] { work(every_s); });
 }
 
 MapWriter::~MapWriter() {
@@ -61,16 +74,12 @@ MapWriter::~MapWriter() {
 }
 
 void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-                     std::span<const Answer> answers) noexcept {
+                     const Image& image, std::span<const Answer> answers) noexcept {
   for (; counted_ <= counted; ++counted_) {
-    came(counted_) = {index - (counted - counted_), nanoseconds(time_s), 0.0};
+    came(counted_) = {index - (counted - counted_), nanoseconds(time_s), 0.0, none};
   }
-  for (const Answer& answer : answers) {
-    if (answer.match && !std::isnan(answer.probability)) {
-      came(answer.frame).probability = static_cast<double>(answer.probability);
-    }
-  }
-  add_places();
+  weigh(answers);
+  add_places(image);
   if (counted_ > settled_after_) settle(counted_ - settled_after_);
   hand_over_statistics(detector);
   const std::uint64_t unsaved =
@@ -79,10 +88,23 @@ void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t in
   frames_.store(counted_, std::memory_order_release);
 }
 
+/// Notes where frames were, and how sure that is.
+void MapWriter::weigh(std::span<const Answer> answers) noexcept {
+  for (const Answer& answer : answers) {
+    if (answer.match && !std::isnan(answer.probability)) {
+      came(answer.frame).probability = static_cast<double>(answer.probability);
+      came(answer.frame).place = answer.match->place;
+    }
+  }
+}
+
 /// Notes the places that have been added since the last frame: the newest rows of the map.
-void MapWriter::add_places() noexcept {
+/// @param image of the newest frame
+void MapWriter::add_places(const Image& image) noexcept {
   const PlaceOrder& order = map_->order();
   std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
+  // What came and went between two frames is not noted at all.
+  while (next_number_ < order.next_number() && !order.row_of_number(next_number_)) ++next_number_;
   if (next_number_ == order.next_number()) return;
   // Several frames may have been taken at once: those to come are noted with the others.
   for (std::size_t row = *order.row_of_number(next_number_);
@@ -90,8 +112,14 @@ void MapWriter::add_places() noexcept {
     const Came& frame = came(order.frame(row));
     const std::size_t slot = order.slot(row);
     source_frames_[slot] = frame.index;
+    linked_[slot] = none;
     added_[static_cast<std::size_t>(noted % added_.size())] = {
-        slot, {order.number(row), frame.index, frame.time_ns}};
+        slot,
+        {order.number(row), frame.index, frame.time_ns},
+        // A place that goes leaves its slot to the one that it goes for.
+        std::exchange(numbers_[slot], order.number(row))};
+    // Copies for frames that never came have no picture.
+    if (thumbnails_ && order.frame(row) + 1 == counted_) thumbnails_->add(image, order.number(row));
     ++noted;
   }
   places_noted_.store(noted, std::memory_order_release);
@@ -108,14 +136,23 @@ void MapWriter::settle(std::uint64_t end) noexcept {
     const auto row = order.row_of_number(added.record.number);
     if (row && order.frame(*row) >= end) break;
     if (!row || links - saved == links_.size()) continue;
-    const double probability = came(order.frame(*row)).probability;
+    const Came& frame = came(order.frame(*row));
     constexpr double likely = 0.9;
-    if (probability >= likely) last_probability_ = probability;
-    const std::uint64_t first = map_->first_visit(*row);
-    if (first == added.record.number) continue;
+    // Of later drives' use, when all that followed is known: rows that are one place do not
+    // compete.
+    constexpr double enough_for_later = 0.5;
+    if (frame.probability >= likely) last_probability_ = frame.probability;
+    std::uint64_t first = map_->first_visit(*row);
+    double probability = frame.probability >= likely ? frame.probability : last_probability_;
+    if (first == added.record.number) {
+      const auto other = order.row_of_number(frame.place);
+      if (frame.probability < enough_for_later || !other) continue;
+      first = map_->first_visit(*other);
+      probability = frame.probability;
+    }
+    linked_[added.slot] = first;
     links_[static_cast<std::size_t>(links++ % links_.size())] = {
-        0, added.record.frame, added.record.number, first,
-        probability >= likely ? probability : last_probability_};
+        0, added.record.frame, added.record.number, first, probability};
   }
   links_noted_.store(links, std::memory_order_release);
 }
@@ -140,7 +177,7 @@ void MapWriter::work(double every_s) {
                    [this] { return stop_ || asked_; });
     asked_ = false;
     lock.unlock();
-    save({});
+    save();
     lock.lock();
   }
 }
@@ -167,30 +204,38 @@ std::size_t MapWriter::words() {
   return words_.size();
 }
 
-/// Saves all that is noted. @param removed numbers of places that go
-/// @return whether it could
-bool MapWriter::save(std::span<const std::uint64_t> removed) {
+/// Saves all that is noted. @return whether it could
+bool MapWriter::save() {
+  const std::int64_t since = steady_ns();
+  saving_since_ns_.store(since, std::memory_order_relaxed);
   try {
     const std::uint64_t end = frames_.load(std::memory_order_acquire);
-    while (saved_frames_.load(std::memory_order_relaxed) < end ||
-           saved_links_.load(std::memory_order_relaxed) <
-               links_noted_.load(std::memory_order_acquire) ||
-           words() > 0) {
-      save_once({});
+    while (saved_frames_.load(std::memory_order_relaxed) < end || left() || words() > 0) {
+      save_once();
     }
-    if (stopped_) save_once(removed);
+    if (ending_) save_once();  // the last statistics
   } catch (const std::exception& error) {
     why_ = error.what();
     if (!std::exchange(failing_, true)) {
       tell(why_ + ": the run goes on, and what is missing is saved as soon as it can be");
     }
+    saving_since_ns_.store(0, std::memory_order_relaxed);
     return false;
   }
-  if (std::exchange(failing_, false)) tell("what was missing is saved");
+  saving_since_ns_.store(0, std::memory_order_relaxed);
+  const bool stalled = !ending_ && steady_ns() - since > patience_ns;
+  if (std::exchange(failing_, false) || stalled) tell("what was missing is saved");
   return true;
 }
 
-void MapWriter::save_once(std::span<const std::uint64_t> removed) {
+/// Whether there is more to save than places.
+bool MapWriter::left() const {
+  return saved_links_.load(std::memory_order_relaxed) <
+             links_noted_.load(std::memory_order_acquire) ||
+         (thumbnails_ && !thumbnails_->waiting(number_after_, 1).empty());
+}
+
+void MapWriter::save_once() {
   // The frames first: all places of theirs are noted then.
   std::uint64_t frames = frames_.load(std::memory_order_acquire);
   const std::uint64_t first = saved_places_.load(std::memory_order_relaxed);
@@ -203,11 +248,13 @@ void MapWriter::save_once(std::span<const std::uint64_t> removed) {
   const PlaceMap& map = *map_;
   const std::size_t size = map.rows().saved_size();
   records_.clear();
+  removed_.clear();
   bytes_.resize(static_cast<std::size_t>(last - first) * size);
   for (std::uint64_t place = first; place < last; ++place) {
     const Added& added = added_[static_cast<std::size_t>(place % added_.size())];
     map.rows().save(added.slot, std::span(bytes_).subspan(records_.size() * size, size));
     records_.push_back(added.record);
+    if (added.gone != none) removed_.push_back(added.gone);
   }
   const std::uint64_t first_link = saved_links_.load(std::memory_order_relaxed);
   const std::uint64_t last_link =
@@ -225,16 +272,22 @@ void MapWriter::save_once(std::span<const std::uint64_t> removed) {
     batch_links_.insert(batch_links_.end(), words_.begin(), words_.end());
   }
   const std::size_t said = batch_links_.size() - linked;
+  std::vector<sqlite::SavedThumbnail> pictures;
+  const std::uint64_t number_after = records_.empty() ? number_after_ : records_.back().number + 1;
+  if (thumbnails_) pictures = thumbnails_->waiting(number_after, most_at_once);
   const bool ready = handing_.load(std::memory_order_acquire) == Handing::ready;
   sqlite::MapBatch batch;
   batch.frames = frames;
   batch.records = records_;
   batch.places = bytes_;
   batch.links = batch_links_;
+  batch.thumbnails = pictures;
   if (ready) batch.statistics = &handed_;
-  batch.removed = removed;
+  batch.removed = removed_;
   stored_->file().save(stored_->session(), batch);
   if (ready) handing_.store(Handing::asked, std::memory_order_release);
+  number_after_ = number_after;
+  if (thumbnails_) thumbnails_->saved(pictures.size());
   saved_places_.store(last, std::memory_order_release);
   saved_links_.store(first_link + linked, std::memory_order_release);
   {
@@ -251,24 +304,32 @@ std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const
   }
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
-  for (const Answer& answer : rest) {
-    if (answer.match && !std::isnan(answer.probability)) {
-      came(answer.frame).probability = static_cast<double>(answer.probability);
-    }
-  }
+  if (thumbnails_) thumbnails_->finish();
+  weigh(rest);
   settle(counted_);
   handing_.store(Handing::asked, std::memory_order_relaxed);
   hand_over_statistics(detector);
-  stopped_ = true;
-  std::vector<std::uint64_t> removed;
-  for (const std::uint64_t number : earlier_) {
-    if (!map_->order().row_of_number(number)) removed.push_back(number);
+  ending_ = true;
+  if (!save()) return why_;
+  if (novel_) forget_superseded();
+  return std::nullopt;
+}
+
+/// Lets sessions go from the file of which later ones, this drive among them, have seen enough.
+void MapWriter::forget_superseded() {
+  const PlaceOrder& order = map_->order();
+  std::vector<std::vector<std::uint64_t>> sessions(order.sessions());
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    const std::uint64_t linked = linked_[order.slot(row)];
+    sessions[order.session_of(row)].push_back(linked != none ? linked : map_->first_visit(row));
   }
-  for (std::uint64_t number = first_number_; number < next_number_; ++number) {
-    if (!map_->order().row_of_number(number)) removed.push_back(number);
+  try {
+    for (const std::size_t session : superseded(sessions)) {
+      stored_->file().forget(stored_->name(session));
+      forgotten_.push_back(stored_->name(session));
+    }
+  } catch (const std::exception&) {  // what stays for now goes after the next drive
   }
-  if (save(removed)) return std::nullopt;
-  return why_;
 }
 
 void MapWriter::tell(std::string text) {
@@ -278,6 +339,13 @@ void MapWriter::tell(std::string text) {
 }
 
 std::optional<std::string> MapWriter::trouble() {
+  const std::int64_t since = saving_since_ns_.load(std::memory_order_relaxed);
+  if (since != 0 && since != stalled_ns_ && steady_ns() - since > patience_ns) {
+    stalled_ns_ = since;
+    return stored_->path().string() +
+           ": the disk has not taken it for two seconds: the run goes on, and what is missing is "
+           "saved as soon as it can be";
+  }
   if (!has_told_.load(std::memory_order_acquire)) return std::nullopt;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return std::nullopt;

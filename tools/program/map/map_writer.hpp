@@ -14,6 +14,7 @@
 
 #include "program/map/lasting_map.hpp"
 #include "program/map/stored_map.hpp"
+#include "program/map/thumbnails.hpp"
 #include "seqloop/detector.hpp"
 
 namespace seqloop::program {
@@ -23,8 +24,9 @@ namespace seqloop::program {
 /// nothing queues up. Until a place is saved, a full map does not forget it.
 class MapWriter {
  public:
-  /// All of them live longer. @param every_s seconds of driving that may be unsaved
-  MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config, double every_s);
+  /// All of them live longer. @param encode makes thumbnails; null: there are none
+  MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
+            const MapSettings& settings, JpegEncoder encode);
 
   MapWriter(const MapWriter&) = delete;
   MapWriter& operator=(const MapWriter&) = delete;
@@ -34,10 +36,11 @@ class MapWriter {
 
   /// Notes what the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
-  /// Work: log N and what the frame added; every few times D copies. Allocates: never. No system
-  /// call, no waiting.
+  /// @param image its picture, where there is one
+  /// Work: log N and what the frame added, a thumbnail's pixels; every few times D copies.
+  /// Allocates: never. No system call, no waiting.
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-            std::span<const Answer> answers) noexcept;
+            const Image& image, std::span<const Answer> answers) noexcept;
 
   /// The drive is over: saves the rest, however long that takes.
   /// @param rest answers of the detector's `finish`
@@ -60,7 +63,16 @@ class MapWriter {
   /// Keeps a person's word on an answer, likewise.
   bool judge(std::uint64_t frame, std::uint64_t place, LastingMap::Word word);
 
-  /// What there is to say of the disk, once: that it refuses, or takes again. Never waits.
+  /// Names of sessions that the drive has superseded, and that are gone.
+  [[nodiscard]] const std::vector<std::string>& forgotten() const noexcept { return forgotten_; }
+
+  /// Places that have no thumbnail for lack of room.
+  [[nodiscard]] std::uint64_t missing_thumbnails() const noexcept {
+    return thumbnails_ ? thumbnails_->missing() : 0;
+  }
+
+  /// What there is to say of the disk, once: that it refuses or stalls, or takes again. Never
+  /// waits.
   [[nodiscard]] std::optional<std::string> trouble();
 
   /// The source's number of the frame that a place of this drive is. @param row of the map
@@ -69,28 +81,34 @@ class MapWriter {
   }
 
  private:
-  /// A place that was added, where it is.
+  /// A place that was added, where it is, and what went for it.
   struct Added {
     std::size_t slot;
     sqlite::PlaceRecord record;
+    std::uint64_t gone;  // number of a place, or `none`
   };
+  static constexpr std::uint64_t none = ~std::uint64_t{0};
   /// Where a frame came from.
   struct Came {
     std::uint64_t index;
     std::int64_t time_ns;
-    double probability;  // of the place that it was at; 0: of none
+    double probability;   // of the place that it was at; 0: of none
+    std::uint64_t place;  // number
   };
   enum class Handing : std::uint8_t { idle, asked, ready };
 
   [[nodiscard]] Came& came(std::uint64_t counted) noexcept {
     return came_[static_cast<std::size_t>(counted % came_.size())];
   }
-  void add_places() noexcept;
+  void weigh(std::span<const Answer> answers) noexcept;
+  void add_places(const Image& image) noexcept;
   void settle(std::uint64_t end) noexcept;
   void hand_over_statistics(const Detector& detector) noexcept;
   void work(double every_s);
-  bool save(std::span<const std::uint64_t> removed);
-  void save_once(std::span<const std::uint64_t> removed);
+  bool save();
+  void save_once();
+  [[nodiscard]] bool left() const;
+  void forget_superseded();
   void tell(std::string text);
   [[nodiscard]] std::size_t words();
 
@@ -99,15 +117,17 @@ class MapWriter {
   std::uint64_t settled_after_;  // frames after which a place is linked to no other any more
 
   // Of the loop.
-  std::uint64_t first_number_;                // of a place of this drive
   std::uint64_t next_number_;                 // of the place that is noted next
-  std::vector<std::uint64_t> earlier_;        // numbers of places that may go
-  bool stopped_ = false;                      // the thread
+  bool ending_ = false;                       // the thread has ended
   std::uint64_t counted_ = 0;                 // frames
   std::uint64_t settled_ = 0;                 // places that have been
   double last_probability_ = 0.0;             // of a link
+  std::int64_t stalled_ns_ = 0;               // `saving_since_ns_` of the stall that was told
   std::vector<Came> came_;                    // [kept], a ring by frame
   std::vector<std::uint64_t> source_frames_;  // [capacity], by slot
+  std::vector<std::uint64_t> numbers_;        // [capacity], by slot: of places, or `none`
+  std::vector<std::uint64_t> linked_;         // [capacity], by slot: to which place, or `none`
+  bool novel_;
 
   // Written by the loop, read by the thread up to the marks.
   std::vector<Added> added_;              // [capacity], a ring
@@ -118,15 +138,21 @@ class MapWriter {
   std::atomic<Handing> handing_{Handing::asked};
   sqlite::SavedStatistics handed_;
 
+  std::optional<Thumbnails> thumbnails_;  // from the loop to the thread
+
   // Written by the thread.
   std::atomic<std::uint64_t> saved_frames_{0};
   std::atomic<std::uint64_t> saved_places_{0};
   std::atomic<std::uint64_t> saved_links_{0};
+  std::uint64_t number_after_ = 0;                // the last place that is saved
+  std::atomic<std::int64_t> saving_since_ns_{0};  // on the steady clock; 0: nothing is saved now
   bool failing_ = false;
   std::string why_;
+  std::vector<std::string> forgotten_;
   std::vector<std::byte> bytes_;
   std::vector<sqlite::PlaceRecord> records_;
   std::vector<sqlite::SavedLink> batch_links_;
+  std::vector<std::uint64_t> removed_;
 
   std::mutex mutex_;
   std::condition_variable wake_;

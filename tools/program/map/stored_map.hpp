@@ -37,6 +37,7 @@ class StoredMap {
   void begin_session(const std::string& settings);
 
   [[nodiscard]] bool read_only() const noexcept { return read_only_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   [[nodiscard]] sqlite::MapFile& file() noexcept { return file_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
 

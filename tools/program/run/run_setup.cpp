@@ -45,8 +45,9 @@ void choose_places(RunSetup& setup, const RunSettings& settings, const FrameSour
 void open_map(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
               Faults& faults) {
   collect(faults, [&] {
+    const bool pictures = setup.describer != nullptr;
     setup.map = open_map(settings.map, setup.config, setup.descriptor_size,
-                         setup.describer ? fingerprint(drive) : "descriptors");
+                         pictures ? fingerprint(drive) : "descriptors", pictures ? jpeg : nullptr);
   });
   if (!setup.map) return;
   const Capacity room = setup.map->capacity(setup.places);

@@ -39,6 +39,7 @@ void info(const MapSettings& settings) {
   const std::vector<sqlite::SessionFacts> sessions = map.sessions();
   const sqlite::MapForm& form = map.form();
   const std::uintmax_t bytes = fs::file_size(file);
+  const sqlite::ThumbnailFacts thumbnails = map.thumbnail_facts();
   if (settings.json) {
     auto list = nlohmann::ordered_json::array();
     for (const sqlite::SessionFacts& facts : sessions) {
@@ -55,16 +56,18 @@ void info(const MapSettings& settings) {
                                       {"describer", form.describer},
                                       {"next_place", map.next_place()},
                                       {"file_bytes", bytes},
+                                      {"thumbnails", thumbnails.count},
+                                      {"thumbnail_bytes", thumbnails.bytes},
                                       {"sessions", list}};
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return;
   }
   std::string text = fmt::format(
       "{} places of {} bytes, descriptors of {} values\nform: {}\ndescribed by: {}\nfile: {} "
-      "bytes\n\n"
+      "bytes, {} thumbnails take {} of them\n\n"
       "      places      frames  session\n",
-      places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer,
-      bytes);
+      places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer, bytes,
+      thumbnails.count, thumbnails.bytes);
   for (const sqlite::SessionFacts& facts : sessions) {
     text += fmt::format("{:>12}{:>12}  {}\n", facts.places, facts.frames, printable(facts.name));
   }

@@ -79,7 +79,8 @@ std::unique_ptr<Serving> open_serving(const RunSettings& settings, const RunSetu
   nlohmann::ordered_json run = conditions_json(conditions);
   run["memory_planned"] = PlaceMap::bytes_needed(conditions.config, setup.capacity()) +
                           Detector::bytes_needed(conditions.config, setup.capacity());
-  return std::make_unique<Serving>(settings.serve, std::move(run), setup.own_places);
+  return std::make_unique<Serving>(settings.serve, std::move(run), setup.own_places,
+                                   setup.map ? setup.map->pictures() : nullptr);
 }
 
 /// Does what people wish, before the next frame. @return whether the run goes on
@@ -171,7 +172,7 @@ void run(const RunSettings& settings, Faults faults) {
     }
     if (setup.map && processed->report.gate != Gate::no_frame) {
       setup.map->note(detector, processed->report.newest, processed->frame.index,
-                      processed->frame.time_s, processed->report.answers);
+                      processed->frame.time_s, processed->frame.image, processed->report.answers);
       if (const auto trouble_saving = setup.map->trouble()) progress.tell(*trouble_saving);
     }
     numbers.rename(*processed);
@@ -310,6 +311,7 @@ Verb run_verb() {
                     [settings](std::string_view value) { settings->pace = parse_pace(value); }});
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
   add_map_options(verb.options, settings->map);
+  add_thumbnail_option(verb.options, settings->map);
   verb.options.section("Source");
   add_drive_options(verb.options, settings->drive);
   add_matcher_options(verb.options, settings->matcher);

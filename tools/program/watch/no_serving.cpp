@@ -10,7 +10,7 @@ namespace seqloop::program {
 class Serving::Impl {};
 
 Serving::Serving(const ServeSettings& /*settings*/, nlohmann::ordered_json /*run*/,
-                 bool /*own_places*/) {
+                 bool /*own_places*/, std::unique_ptr<PlacePictures> /*pictures*/) {
   throw SetupError({"serve", "this program was built without a server",
                     "install libcpp-httplib-dev and pkgconf, configure and build anew"});
 }

@@ -2,16 +2,13 @@
 #include "program/watch/picture_store.hpp"
 
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 namespace seqloop::program {
 
 PictureStore::Kept PictureStore::kept(const SmallPicture& picture) {
-  const std::size_t bytes = static_cast<std::size_t>(picture.width) *
-                            static_cast<std::size_t>(picture.height) * (picture.gray ? 1U : 3U);
   const auto* const first = picture.pixels.data();
-  return {picture.width, picture.height, picture.gray, {first, first + bytes}};
+  return {picture, {first, first + picture.bytes()}};
 }
 
 void PictureStore::add(const SmallPicture& picture) {
@@ -54,12 +51,8 @@ std::string PictureStore::jpeg(std::uint64_t number) const {
   const bool is_newest = newest_ && newest_->first == number;
   if (found == kept_.end() && !is_newest) return {};
   const Kept& picture = found != kept_.end() ? found->second : newest_->second;
-  // cv::Mat has no view of constant pixels; this one is only read.
-  const cv::Mat view(picture.height, picture.width, picture.gray ? CV_8UC1 : CV_8UC3,
-                     const_cast<std::uint8_t*>(picture.pixels.data()));
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", view, bytes, {cv::IMWRITE_JPEG_QUALITY, 80});
-  return {bytes.begin(), bytes.end()};
+  constexpr int quality = 80;
+  return program::jpeg(picture.facts, picture.pixels, quality);
 }
 
 }  // namespace seqloop::program

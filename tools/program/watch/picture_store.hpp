@@ -36,9 +36,7 @@ class PictureStore {
 
  private:
   struct Kept {
-    int width;
-    int height;
-    bool gray;
+    SmallPictureFacts facts;
     std::vector<std::uint8_t> pixels;
   };
   static Kept kept(const SmallPicture& picture);

@@ -200,12 +200,20 @@ http::Reply RunSite::metrics() const {
   return {200, "text/plain; version=0.0.4; charset=utf-8", program::metrics(view_.newest(), facts)};
 }
 
-Json RunSite::around(std::string_view query) const {
+http::Reply RunSite::around(std::string_view query) const {
   Json json;
+  const auto place = number_in(query, "place");
+  if (place && saved_places_) {
+    try {
+      json["place"] = saved_places_->around(*place);
+    } catch (const SetupError& error) {
+      return fault(404, error.what());
+    }
+  }
+  const std::scoped_lock lock(mutex_);
   if (const auto frame = number_in(query, "frame")) json["frame"] = frames_.around(*frame);
-  if (const auto place = number_in(query, "place"))
-    json["place"] = (own_places_ ? frames_ : places_).around(*place);
-  return json;
+  if (place && !saved_places_) json["place"] = (own_places_ ? frames_ : places_).around(*place);
+  return json_reply(json);
 }
 
 http::Reply RunSite::picture(std::string_view query) {
@@ -213,6 +221,15 @@ http::Reply RunSite::picture(std::string_view query) {
   const bool of_place = value_in(query, "of") == "place";
   if (!number || (!of_place && value_in(query, "of") != "frame"))
     return fault(400, "of=frame or of=place, and number=N, are wanted");
+  if (of_place && saved_places_) {
+    try {
+      std::string file = saved_places_->jpeg(*number);
+      if (file.empty()) return fault(404, "no picture of it is kept");
+      return {200, "image/jpeg", std::move(file)};
+    } catch (const SetupError& error) {
+      return fault(404, error.what());
+    }
+  }
   const PictureStore& store = of_place && !own_places_ ? places_ : frames_;
   for (int tries = 0; tries < 60; ++tries) {
     {
@@ -242,6 +259,7 @@ http::Reply RunSite::get(std::string_view path, std::string_view query) {
   if (path == "/style.css") return {200, "text/css; charset=utf-8", std::string(page.style)};
   if (path == "/page.js") return {200, "text/javascript; charset=utf-8", std::string(page.script)};
   if (path == "/api/picture") return picture(query);
+  if (path == "/api/pictures") return around(query);
   const std::scoped_lock lock(mutex_);
   if (path == "/healthz") {
     const std::string why = trouble();
@@ -252,7 +270,6 @@ http::Reply RunSite::get(std::string_view path, std::string_view query) {
   if (path == "/api/status") return json_reply(status());
   if (path == "/api/history") return json_reply(view_.history());
   if (path == "/api/marks") return json_reply(view_.marks());
-  if (path == "/api/pictures") return json_reply(around(query));
   if (path == "/api/truth.csv") return {200, "text/csv; charset=utf-8", view_.truth_csv()};
   if (path == "/api/loops") {
     const std::uint64_t count = number_in(query, "count").value_or(most_loops_at_once);

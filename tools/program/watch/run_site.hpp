@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "program/map/lasting_map.hpp"
+#include "program/map/place_pictures.hpp"
 #include "program/watch/picture_store.hpp"
 #include "program/watch/run_view.hpp"
 #include "seqloop/http/server.hpp"
@@ -26,8 +27,13 @@ class RunSite : public http::Site {
   static constexpr std::size_t most_loops_at_once = 100;
 
   /// @param watch lives longer
-  RunSite(Watch& watch, nlohmann::ordered_json run, bool own_places)
-      : watch_(&watch), own_places_(own_places), view_(std::move(run)) {}
+  /// @param pictures of a map's places; null: there are those that `add_place` brings
+  RunSite(Watch& watch, nlohmann::ordered_json run, bool own_places,
+          std::unique_ptr<PlacePictures> pictures = nullptr)
+      : watch_(&watch),
+        own_places_(own_places),
+        saved_places_(std::move(pictures)),
+        view_(std::move(run)) {}
 
   /// @param server for its counts; lives as long as anybody asks
   void serve_by(const http::Server& server) { server_ = &server; }
@@ -67,7 +73,7 @@ class RunSite : public http::Site {
   [[nodiscard]] std::string trouble() const;
   [[nodiscard]] Json status() const;
   [[nodiscard]] http::Reply metrics() const;
-  [[nodiscard]] Json around(std::string_view query) const;
+  [[nodiscard]] http::Reply around(std::string_view query) const;
   [[nodiscard]] http::Reply picture(std::string_view query);
   [[nodiscard]] http::Reply control(const Json& wish);
   [[nodiscard]] http::Reply set_threshold(const Json& wish);
@@ -76,6 +82,7 @@ class RunSite : public http::Site {
   Watch* watch_;
   LastingMap* map_ = nullptr;
   bool own_places_;
+  std::unique_ptr<PlacePictures> saved_places_;  // not guarded: it takes care of itself
   const http::Server* server_ = nullptr;
   mutable std::mutex mutex_;
   std::condition_variable told_;

@@ -64,9 +64,10 @@ http::Address parse(const std::string& text) {
 
 class Serving::Impl {
  public:
-  Impl(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places)
+  Impl(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places,
+       std::unique_ptr<PlacePictures> pictures)
       : token_(settings.token.empty() ? new_token() : read_token(settings.token)),
-        site_(watch_, std::move(run), own_places),
+        site_(watch_, std::move(run), own_places, std::move(pictures)),
         server_(parse(*settings.address), token_, site_) {
     site_.serve_by(server_);
     const std::string url = "http://" + http::to_string(server_.address());
@@ -117,8 +118,9 @@ class Serving::Impl {
   std::thread thread_;
 };
 
-Serving::Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places)
-    : impl_(std::make_unique<Impl>(settings, std::move(run), own_places)) {}
+Serving::Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places,
+                 std::unique_ptr<PlacePictures> pictures)
+    : impl_(std::make_unique<Impl>(settings, std::move(run), own_places, std::move(pictures))) {}
 Serving::~Serving() = default;
 
 Watch& Serving::watch() noexcept { return impl_->watch(); }

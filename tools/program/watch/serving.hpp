@@ -8,6 +8,7 @@
 #include <string>
 
 #include "program/map/lasting_map.hpp"
+#include "program/map/place_pictures.hpp"
 #include "program/options/options.hpp"
 #include "program/watch/watch.hpp"
 
@@ -30,8 +31,10 @@ class Serving {
   /// Listens from here on, and says on stderr where, and by which token it may be controlled.
   /// @param run what the run was started with, as `RunView` takes it
   /// @param own_places whether places are frames of the drive itself
+  /// @param pictures of a map's places; null: there are those that `add_place` brings
   /// Throws SetupError: no such address, taken, no token in the file; a program without a server.
-  Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places);
+  Serving(const ServeSettings& settings, nlohmann::ordered_json run, bool own_places,
+          std::unique_ptr<PlacePictures> pictures);
   Serving(const Serving&) = delete;
   Serving& operator=(const Serving&) = delete;
   Serving(Serving&&) = delete;

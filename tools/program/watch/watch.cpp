@@ -18,29 +18,6 @@ void add(StageCounts& stage, Nanoseconds took) noexcept {
 
 }  // namespace
 
-bool shrink(const Image& image, std::uint64_t number, SmallPicture& small) noexcept {
-  if (image.data == nullptr || image.width <= 0 || image.height <= 0) return false;
-  const int step =
-      std::max({1, (image.width + SmallPicture::most_width - 1) / SmallPicture::most_width,
-                (image.height + SmallPicture::most_height - 1) / SmallPicture::most_height});
-  small.number = number;
-  small.width = image.width / step;
-  small.height = image.height / step;
-  if (small.width == 0 || small.height == 0) return false;
-  small.gray = image.format == PixelFormat::gray8;
-  const std::size_t channels = small.gray ? 1 : 3;
-  std::uint8_t* out = small.pixels.data();
-  for (int y = 0; y < small.height; ++y) {
-    const std::uint8_t* in = image.data +
-                             static_cast<std::size_t>(y * step + step / 2) * image.stride +
-                             static_cast<std::size_t>(step / 2) * channels;
-    for (int x = 0; x < small.width; ++x, in += static_cast<std::size_t>(step) * channels) {
-      out = std::copy_n(in, channels, out);
-    }
-  }
-  return true;
-}
-
 void Watch::count(const ProcessedFrame& processed, const RunSummary& summary) noexcept {
   RunCounts& counts = next_.counts;
   counts.frames = summary.frames();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "program/drives/small_picture.hpp"
 #include "program/run/run_summary.hpp"
 #include "seqloop/fixed_text.hpp"
 #include "seqloop/linux/detail/return_queue.hpp"
@@ -56,21 +57,8 @@ struct Snapshot {
   MapState map;
 };
 
-/// A picture on its way to whoever looks: at most this large, every n-th pixel of the loop's own.
-struct SmallPicture {
-  static constexpr int most_width = 160;   // pixels
-  static constexpr int most_height = 120;  // pixels
-
-  std::uint64_t number = 0;  ///< of the frame
-  int width = 0;             ///< pixels
-  int height = 0;            ///< pixels
-  bool gray = true;          ///< a byte a pixel; otherwise B, G, R
-  std::array<std::uint8_t, std::size_t{3} * most_width * most_height> pixels{};  ///< row by row
-};
-
-/// Takes every n-th pixel of a picture, so that it fits. Work: its pixels. Allocates: never.
-/// @return false where there is no picture
-bool shrink(const Image& image, std::uint64_t number, SmallPicture& small) noexcept;
+/// A picture on its way to whoever looks.
+using SmallPicture = PictureWithin<160, 120>;
 
 /// What people wish of a loop. Set by any thread; the loop looks before each frame.
 struct Wishes {

@@ -77,6 +77,12 @@ struct SavedThumbnail {
   bool operator==(const SavedThumbnail&) const = default;
 };
 
+/// How many thumbnails there are, and how much they take.
+struct ThumbnailFacts {
+  std::uint64_t count = 0;
+  std::uint64_t bytes = 0;  ///< of JPEG
+};
+
 /// What is saved at once: all of it or nothing.
 struct MapBatch {
   std::uint64_t frames = 0;                ///< of the session are dealt with, these among them
@@ -148,6 +154,11 @@ class MapFile {
   void read_links(const std::function<void(const SavedLink&)>& take) const;
   void read_thumbnails(const std::function<void(const SavedThumbnail&)>& take) const;
   [[nodiscard]] std::optional<SavedThumbnail> thumbnail(std::uint64_t place) const;
+  /// Places that have a thumbnail, in order: the nearest to this one, with the one before and the
+  /// one after it; fewer at the ends. Throws SetupError: damaged.
+  [[nodiscard]] std::vector<std::uint64_t> thumbnails_around(std::uint64_t place) const;
+  /// Work: the table of thumbnails, without checksums. Throws SetupError: damaged.
+  [[nodiscard]] ThumbnailFacts thumbnail_facts() const;
 
   /// Everything that is wrong with the file, as far as it can be told: every row's checksum, sums,
   /// and SQLite's own structure. Empty: nothing. Work: the whole file, twice.
@@ -164,7 +175,8 @@ class MapFile {
   /// std::invalid_argument: another session, numbers or sizes that do not fit.
   void save(std::int64_t session, const MapBatch& batch);
 
-  /// Removes a session with its places, thumbnails and links to them; others keep their numbers.
+  /// Removes a session with its places, thumbnails and links; others keep their numbers, and their
+  /// links to places of it, which say which of theirs are one place.
   /// Throws SetupError: no such name; SaveError.
   void forget(const std::string& session);
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "program/map/superseded.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace seqloop::program {
+namespace {
+
+// All chosen on garage_laps; the page of the room platform/sqlite has the numbers.
+constexpr std::size_t enough_visits = 6;      // sessions
+constexpr std::uint64_t side_by_side = 16;    // places that count as one, and those beside them
+constexpr std::size_t longest_stretch = 60;   // places
+constexpr std::size_t most_not_visited = 40;  // percent of a session's places
+
+/// In which sessions places were seen, the newest session first.
+using Visits = std::unordered_map<std::uint64_t, std::vector<std::size_t>>;
+
+/// Sessions that have been where a place is.
+std::size_t visits_of(const Visits& visits, std::uint64_t first) {
+  const std::uint64_t at = first / side_by_side;
+  std::vector<std::size_t> seen;
+  for (const std::uint64_t near : {at == 0 ? at : at - 1, at, at + 1}) {
+    const auto found = visits.find(near);
+    if (found != visits.end()) seen.insert(seen.end(), found->second.begin(), found->second.end());
+  }
+  std::ranges::sort(seen);
+  const auto [last, end] = std::ranges::unique(seen);
+  return static_cast<std::size_t>(last - seen.begin());
+}
+
+}  // namespace
+
+std::vector<std::size_t> superseded(std::span<const std::vector<std::uint64_t>> sessions) {
+  std::vector<std::size_t> found;
+  Visits visits;
+  for (std::size_t session = sessions.size(); session-- > 0;) {
+    const std::vector<std::uint64_t>& places = sessions[session];
+    std::size_t missing = 0;
+    std::size_t stretch = 0;
+    std::size_t longest = 0;
+    for (const std::uint64_t first : places) {
+      const bool enough = visits_of(visits, first) >= enough_visits;
+      stretch = enough ? 0 : stretch + 1;
+      longest = std::max(longest, stretch);
+      if (!enough) ++missing;
+    }
+    const bool goes = !places.empty() && longest <= longest_stretch &&
+                      missing * 100 <= places.size() * most_not_visited;
+    if (goes) found.insert(found.begin(), session);
+    for (const std::uint64_t first : places) {
+      std::vector<std::size_t>& seen = visits[first / side_by_side];
+      if (seen.empty() || seen.back() != session) seen.push_back(session);
+    }
+  }
+  return found;
+}
+
+}  // namespace seqloop::program
