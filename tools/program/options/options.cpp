@@ -177,8 +177,9 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   for (const std::string& candidate : known) {
     const std::size_t distance = edits(name, candidate);
     // Of two that are as near, the one that begins alike.
-    const bool nearer = distance < fewest ||
-                        (distance == fewest && !best.empty() && candidate.front() == name.front());
+    const bool nearer =
+        distance < fewest || (distance == fewest && !best.empty() &&
+                              candidate.front() == name.front() && best.front() != name.front());
     if (!nearer) continue;
     fewest = distance;
     best = candidate;
