@@ -53,8 +53,7 @@ class Words : public Peer {
       for (std::size_t i = 0; i < size; ++i) seen.push_back(vocabulary_.word(samples_[at + i]));
       at += size;
       std::ranges::sort(seen);
-      const auto repeated = std::ranges::unique(seen);
-      seen.erase(repeated.begin(), repeated.end());
+      seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
       for (const std::size_t word : seen) ++frames[word];
     }
     const auto all = static_cast<double>(std::max<std::size_t>(1, sample_sizes_.size()));

@@ -25,8 +25,7 @@ std::size_t visits_of(const Visits& visits, std::uint64_t first) {
     if (found != visits.end()) seen.insert(seen.end(), found->second.begin(), found->second.end());
   }
   std::ranges::sort(seen);
-  const auto [last, end] = std::ranges::unique(seen);
-  return static_cast<std::size_t>(last - seen.begin());
+  return static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
 }  // namespace
