@@ -142,7 +142,8 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
 
 TEST_F(Serve, AMapThatLastsIsSavedWhenAskedAndKeepsWhatAPersonSaid) {
   ASSERT_EQ(run("match --query q.npy --map m.seqloop --session monday --out m.csv").exit_code, 0);
-  start("--source q.npy --pace live --fps 60 --map m.seqloop --session tuesday --save-every-s 3600");
+  start(
+      "--source q.npy --pace live --fps 60 --map m.seqloop --session tuesday --save-every-s 3600");
   ASSERT_TRUE(until([](const Json& status) { return status["loops"]["listed"] > 1; }));
   Json status = json(get("/api/status"));
   ASSERT_EQ(status["run"]["sessions"].size(), 2U);
