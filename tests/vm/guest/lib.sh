@@ -101,10 +101,11 @@ ends() {
 holds() { ls -l "/proc/$live/fd" 2>/dev/null | grep -q "$1\$"; }
 
 # count_of STATUS [FILE], good_lines [FILE]: lines with the status; lines of frames that were searched with
-count_of() { grep -c "\"status\":\"$1\"" "${2:-$lines}"; }
-good_lines() { grep -c '"status":"\(warming_up\|waiting\|no_candidate\|not_unique\|new_place\|unsure\|match\)"' "${1:-$lines}"; }
+# The status of a line stands behind its time; its answers have others.
+count_of() { grep -c "\"time_s\":[^,]*,\"status\":\"$1\"" "${2:-$lines}"; }
+good_lines() { grep -c '"time_s":[^,]*,"status":"\(warming_up\|waiting\|no_candidate\|not_unique\|new_place\|unsure\|match\)"' "${1:-$lines}"; }
 # A line for each frame; the last one of a live run, about none, does not count.
-all_lines() { grep -vc '"status":"ended"' "$lines"; }
+all_lines() { grep -vc '"time_s":[^,]*,"status":"ended"' "$lines"; }
 
 # has N COUNT...: the count is at least N; is N COUNT...: exactly
 has() { local n=$1; shift; [ "$("$@")" -ge "$n" ]; }
