@@ -15,7 +15,8 @@ constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 std::size_t most_runs(const MatcherConfig& config) {
   if (config.candidates == Candidates::all) return 1;
   const std::size_t k = config.candidates == Candidates::adaptive ? config.initial_k : config.k;
-  return k + (relocalises(config) ? CandidateProposals::most : 0);
+  // Of those that scan, also what the scan proposes and where the robot is believed to be.
+  return k + (scans(config) ? CandidateProposals::most + 1 : 0);
 }
 
 /// Visits the cells that lines through the run can touch, the newest first, until one says false:

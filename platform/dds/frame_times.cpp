@@ -27,7 +27,7 @@ FrameTimes::Judged FrameTimes::judge(std::int64_t stamp_ns, Nanoseconds arrived,
     start_ns_ = stamped ? stamp_ns : wall_ns;
   } else if (stamped && last_stamp_ > 0 && stamp_ns >= last_stamp_) {
     const std::int64_t interval = stamp_ns - last_stamp_;
-    last_ns_ += interval;
+    last_ns_ = std::min(last_ns_ + interval, most_stamp);
     judged.lost = missing(interval);
   } else {
     // Without a stamp, or with one of a clock that was set back, time goes on as it does here.
@@ -37,7 +37,7 @@ FrameTimes::Judged FrameTimes::judge(std::int64_t stamp_ns, Nanoseconds arrived,
   }
   judged.time_s = static_cast<double>(last_ns_) / 1e9;
   judged.stamp = arrived;
-  const std::int64_t age = wall_ns - stamp_ns;
+  const std::int64_t age = stamped ? wall_ns - stamp_ns : 0;
   if (stamped && age >= -future_tolerance && age <= oldest) {
     judged.stamp -= Nanoseconds(std::max<std::int64_t>(age, 0));
   } else if (stamped && odd == Odd::none) {
