@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "http/client.hpp"
+#include "program/process/available_memory.hpp"
 #include "program/watch/run_site.hpp"
 
 namespace seqloop::program {

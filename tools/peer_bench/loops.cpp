@@ -2,17 +2,16 @@
 #include "peer_bench/loops.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <ctime>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "peer_bench/peer.hpp"
 #include "program/drives/drives.hpp"
+#include "program/process/available_memory.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/progress.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -28,13 +27,6 @@ struct Settings {
   bool standardise = false;
   std::size_t exclude = 100;
 };
-
-std::uint64_t resident_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t pages = 0;
-  statm >> pages >> pages;
-  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
 
 /// Of this thread, so that other work on the machine costs a peer nothing.
 double processor_ms() {
@@ -86,7 +78,7 @@ void loops(const Settings& settings, Faults faults) {
   each(closing ? settings.source : settings.reference, "learning",
        [&](const Frame& frame) { peer->learn(frame); });
   peer->learnt();
-  const std::uint64_t before = resident_bytes();
+  const std::uint64_t before = program::resident_memory();
   if (closing) {
     peer->begin();
   } else {
@@ -105,7 +97,7 @@ void loops(const Settings& settings, Faults faults) {
     const Guess guess = peer->find();
     if (closing) peer->keep();
     const double end = processor_ms();
-    const std::uint64_t now = resident_bytes();
+    const std::uint64_t now = program::resident_memory();
     out->write(fmt::format("{},{},{:.6g},{:.6g},{},{:.4f},{:.4f},{}\n", count++,
                            guess.place ? std::to_string(*guess.place) : "",
                            guess.place ? guess.distance : 0.0, guess.ratio, guess.inliers,

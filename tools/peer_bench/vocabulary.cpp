@@ -2,6 +2,7 @@
 #include "peer_bench/vocabulary.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace seqloop::peers {
 namespace {
@@ -10,17 +11,13 @@ constexpr std::size_t branches = 10;
 constexpr int levels = 4;
 constexpr int rounds = 5;
 
-std::size_t nearest(std::span<const Bits> centres, const Bits& feature) noexcept {
-  std::size_t best = 0;
-  unsigned least = differing(centres[0], feature);
-  for (std::size_t i = 1; i < centres.size(); ++i) {
-    const unsigned distance = differing(centres[i], feature);
-    if (distance < least) {
-      least = distance;
-      best = i;
-    }
-  }
-  return best;
+/// The first of the nearest. @param centre that an item has
+template <class Item, class Centre>
+std::size_t nearest(std::span<const Item> items, const Bits& feature, Centre centre) noexcept {
+  const auto distance = [&](const Item& item) {
+    return differing(std::invoke(centre, item), feature);
+  };
+  return static_cast<std::size_t>(std::ranges::min_element(items, {}, distance) - items.begin());
 }
 
 /// Each bit as most of them have it.
@@ -59,7 +56,8 @@ void Vocabulary::part(std::size_t node, std::span<Bits> features, int left) {
   std::vector<std::vector<Bits>> parts;
   for (int round = 0; round < rounds; ++round) {
     parts.assign(branches, {});
-    for (const Bits& feature : features) parts[nearest(centres, feature)].push_back(feature);
+    for (const Bits& feature : features)
+      parts[nearest(std::span<const Bits>(centres), feature, std::identity())].push_back(feature);
     for (std::size_t i = 0; i < branches; ++i) {
       if (!parts[i].empty()) centres[i] = median(parts[i]);
     }
@@ -79,16 +77,8 @@ void Vocabulary::part(std::size_t node, std::span<Bits> features, int left) {
 std::size_t Vocabulary::word(const Bits& feature) const noexcept {
   std::size_t node = 0;
   while (nodes_[node].count > 0) {
-    std::size_t best = nodes_[node].first;
-    unsigned least = differing(nodes_[best].centre, feature);
-    for (std::size_t child = best + 1; child < nodes_[node].first + nodes_[node].count; ++child) {
-      const unsigned distance = differing(nodes_[child].centre, feature);
-      if (distance < least) {
-        least = distance;
-        best = child;
-      }
-    }
-    node = best;
+    const auto children = std::span(nodes_).subspan(nodes_[node].first, nodes_[node].count);
+    node = nodes_[node].first + nearest(children, feature, &Node::centre);
   }
   return nodes_[node].word;
 }

@@ -92,10 +92,10 @@ std::vector<NearRow> near_truth(const Drive& drive, double metres) {
   };
   for (std::size_t k = 1; k < legs.size(); ++k) {
     if (!legs[k].joined) continue;
+    const std::vector<Seen> here = around(drive, line, k, path.begin(k));
     // A junction is a place of both roads.
     for (const std::size_t road : {k - 1, k}) {
       const double s = road == k ? legs[k].start : legs[road].start + legs[road].length;
-      const std::vector<Seen> here = around(drive, line, k, path.begin(k));
       for (std::size_t j = 0; j < legs.size(); ++j) {
         if (j == road || s < legs[j].start || s > legs[j].start + legs[j].length) continue;
         const double p = path.begin(j) + (s - legs[j].start);

@@ -95,8 +95,8 @@ class SqliteMap : public LastingMap {
 
   bool save_now() override { return writer_ && writer_->save_now(); }
 
-  bool judge(std::uint64_t frame, std::uint64_t place, Word word) override {
-    return writer_ && writer_->judge(frame, place, word);
+  bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict) override {
+    return writer_ && writer_->judge(frame, place, verdict);
   }
 
   [[nodiscard]] Seen where(std::uint64_t number) const override {

@@ -13,6 +13,7 @@
 #include "program/drives/small_picture.hpp"
 #include "program/map/map_settings.hpp"
 #include "program/map/place_pictures.hpp"
+#include "program/map/verdict.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/frame.hpp"
 
@@ -72,12 +73,10 @@ class LastingMap {
   /// @return false where nothing is saved: the map is only read, or the drive is over
   virtual bool save_now() = 0;
 
-  /// A person's word on an answer.
-  enum class Word : std::uint8_t { none, accepted, rejected };
-  /// Keeps such a word. From any thread but the loop's.
+  /// Keeps a person's word on an answer. From any thread but the loop's.
   /// @param frame as its source counts @param place the number of the place it was matched with
   /// @return as `save_now`
-  virtual bool judge(std::uint64_t frame, std::uint64_t place, Word word) = 0;
+  virtual bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict) = 0;
 
   /// Where a place was seen.
   struct Seen {

@@ -189,12 +189,12 @@ bool MapWriter::save_now() {
   return asked_;
 }
 
-bool MapWriter::judge(std::uint64_t frame, std::uint64_t place, LastingMap::Word word) {
+bool MapWriter::judge(std::uint64_t frame, std::uint64_t place, Verdict verdict) {
   const std::scoped_lock lock(mutex_);
   if (stop_) return false;
-  const double said = word == LastingMap::Word::accepted   ? sqlite::person_accepted
-                      : word == LastingMap::Word::rejected ? sqlite::person_rejected
-                                                           : sqlite::person_silent;
+  const double said = verdict == Verdict::accepted   ? sqlite::person_accepted
+                      : verdict == Verdict::rejected ? sqlite::person_rejected
+                                                     : sqlite::person_silent;
   words_.push_back({0, frame, std::nullopt, place, said});
   return true;
 }

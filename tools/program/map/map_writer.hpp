@@ -12,9 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "program/map/lasting_map.hpp"
+#include "program/map/map_settings.hpp"
 #include "program/map/stored_map.hpp"
 #include "program/map/thumbnails.hpp"
+#include "program/map/verdict.hpp"
 #include "seqloop/detector.hpp"
 
 namespace seqloop::program {
@@ -61,7 +62,7 @@ class MapWriter {
   bool save_now();
 
   /// Keeps a person's word on an answer, likewise.
-  bool judge(std::uint64_t frame, std::uint64_t place, LastingMap::Word word);
+  bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict);
 
   /// Names of sessions that the drive has superseded, and that are gone.
   [[nodiscard]] const std::vector<std::string>& forgotten() const noexcept { return forgotten_; }

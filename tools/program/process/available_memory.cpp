@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "program/process/available_memory.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <fstream>
@@ -21,6 +23,14 @@ std::uint64_t available_memory() {
     if (name == "MemAvailable:") return std::min(kibibytes * 1024, most);
   }
   return most;
+}
+
+std::uint64_t resident_memory() {
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t all = 0;
+  std::uint64_t resident = 0;
+  statm >> all >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 bool fits_memory(std::uint64_t bytes, std::string_view what) {

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "program/process/available_memory.hpp"
 #include "program/process/build_info.hpp"
 #include "program/watch/metrics.hpp"
 #include "program/watch/page_files.hpp"
@@ -325,10 +326,7 @@ http::Reply RunSite::judge(const Json& wish) {
   if (!view_.judge(number, verdict)) return fault(404, "there is no such loop");
   if (map_ != nullptr) {
     const Loop& loop = view_.loop_list()[number];
-    map_->judge(loop.frame, loop.match,
-                verdict == Verdict::accepted   ? LastingMap::Word::accepted
-                : verdict == Verdict::rejected ? LastingMap::Word::rejected
-                                               : LastingMap::Word::none);
+    map_->judge(loop.frame, loop.match, verdict);
   }
   return json_reply({{"loop", wish["loop"]}, {"verdict", word}});
 }

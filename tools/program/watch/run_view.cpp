@@ -2,12 +2,10 @@
 #include "program/watch/run_view.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 
 #include "program/run/frame_json.hpp"
 
@@ -41,14 +39,6 @@ constexpr std::size_t most_times = 4096;    // of frames whose answers may still
 constexpr std::size_t most_recent = 2'000;  // answers that are sent as they come
 
 }  // namespace
-
-std::uint64_t resident_memory() {
-  std::ifstream statm("/proc/self/statm");
-  std::uint64_t all = 0;
-  std::uint64_t resident = 0;
-  statm >> all >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
 
 void RunView::take(const Snapshot& snapshot, double now_s) {
   newest_ = snapshot;

@@ -9,13 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "program/map/verdict.hpp"
 #include "program/watch/watch.hpp"
 #include "seqloop/latency_histogram.hpp"
 
 namespace seqloop::program {
-
-/// A person's word on a loop.
-enum class Verdict : std::uint8_t { none, accepted, rejected };
 
 /// An accepted match.
 struct Loop {
@@ -118,8 +116,5 @@ class RunView {
   std::optional<double> frame_at_s_;
   std::optional<double> over_since_s_;
 };
-
-/// Bytes of memory that this process has resident.
-[[nodiscard]] std::uint64_t resident_memory();
 
 }  // namespace seqloop::program
