@@ -25,13 +25,14 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
   const std::size_t held =
       static_cast<std::size_t>(std::min<std::uint64_t>({frames_, novelties_.size(), out.size()}));
   std::size_t back = 0;
+  std::size_t frame = held > 0 ? slot(0) : 0;
   auto at = static_cast<std::uint32_t>(index);
   while (back < held && at != none) {
-    const std::size_t frame = slot(back);
     const Traced& step = steps_[frame * width_ + at];
     out[back++] = {step.row, static_cast<double>(step.gain),
                    static_cast<double>(novelties_[frame])};
     at = step.parent;
+    frame = (frame == 0 ? novelties_.size() : frame) - 1;
   }
   return back;
 }

@@ -31,6 +31,7 @@ std::size_t margin_of(const MatcherConfig& config) {
 /// Rows and those around them that they are enhanced by, of their own sessions.
 CandidateRun with_around(const PlaceOrder& order, std::size_t first, std::size_t last,
                          std::size_t reach) {
+  if (reach == 0) return {first, last};
   return {order.before(first, reach), std::min(order.around(last - 1).last, last + reach)};
 }
 

@@ -41,14 +41,14 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, none, 0.0, 0};
+  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, none, 0.0, 0, {}};
   end_ = frame + 1;
 }
 
 void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines) noexcept {
   if (at(frame).frame != frame) return;
   at(frame).lines = lines.size();
-  std::ranges::copy(lines, lines_of(frame).begin());
+  std::ranges::copy(lines, lines_in(slot_of(frame)).begin());
 }
 
 /// That the robot was at the frame's row when it took it.
@@ -75,16 +75,17 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   const Waiting& before = at(first);
   const bool known = before.frame == first && before.believed && before.lag > 0 &&
                      map.order().apart(before.row, trace.back().row) <= own;
+  const auto waiting = static_cast<std::size_t>(newest + 1 - first_);
+  const std::size_t frames = std::min(begun(map, newest, oldest, trace), waiting);
   // A frame that stands still tells half as much as one that does not.
   constexpr double half = 0.5;
   const std::span<const TraceSpan::On> on =
       span_.find(trace, known ? trace_is_right(before.odds) * before.on.still : 0.0,
-                 belief.usual_gain(), half * belief.usual_novelty());
-  const std::size_t frames = begun(map, newest, oldest, trace);
+                 belief.usual_gain(), half * belief.usual_novelty(), frames);
   for (std::size_t back = 0; back < frames; ++back) {
-    Waiting& waiting = at(newest - back);
-    if (waiting.waits && waiting.frame == newest - back) {
-      look_back(map.order(), waiting, trace[back].row, odds, on[back], back);
+    Waiting& frame = at(newest - back);
+    if (frame.waits && frame.frame == newest - back) {
+      look_back(map.order(), frame, trace[back].row, odds, on[back], back);
     }
   }
 }
@@ -130,17 +131,23 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::s
 }
 
 /// How much better the best line through a frame's row is than the best one elsewhere.
-double PendingAnswers::margin(const PlaceMap& map, std::uint64_t frame, std::size_t row) noexcept {
+double PendingAnswers::margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept {
   double here = 0.0;
   double elsewhere = 0.0;
-  for (const FoundLine& line : lines_of(frame).first(at(frame).lines)) {
+  for (const FoundLine& line : lines_in(slot).first(waiting_[slot].lines)) {
     const bool same = line.row < map.size() && map.same_place(line.row, row);
     double& lowest = same ? here : elsewhere;
     if (lowest == 0.0) lowest = line.score;
   }
   constexpr double most = 0.2;
   if (here == 0.0) return -most;
-  return elsewhere == 0.0 ? most : std::clamp(logarithm(elsewhere / here), -most, most);
+  if (elsewhere == 0.0) return most;
+  // From step to step it is nearly always the same two lines.
+  Lead& lead = waiting_[slot].lead;
+  if (lead.here != here || lead.elsewhere != elsewhere) {
+    lead = {here, elsewhere, logarithm(elsewhere / here)};
+  }
+  return std::clamp(lead.log_ratio, -most, most);
 }
 
 /// What sequence search says of the frames along the trace.
@@ -150,8 +157,9 @@ void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
   std::size_t asked = 0;
   for (std::size_t back = after_centre_; back < trace.size(); ++back) {
     const std::uint64_t frame = newest - back;
-    if (at(frame).frame != frame || at(frame).lines == 0) continue;
-    const double better = margin(map, frame, trace[back].row);
+    const std::size_t slot = slot_of(frame);
+    if (waiting_[slot].frame != frame || waiting_[slot].lines == 0) continue;
+    const double better = margin(map, slot, trace[back].row);
     if (asked++ < windows) evidence_->margin += better / static_cast<double>(windows);
     constexpr double weight = 16.0;
     constexpr double usual = 0.04;
@@ -196,7 +204,7 @@ std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept {
   const Waiting& waiting = at(frame);
   if (waiting.frame != frame || !waiting.believed) return std::nullopt;
-  for (const FoundLine& line : lines_of(frame).first(waiting.lines)) {
+  for (const FoundLine& line : lines_in(slot_of(frame)).first(waiting.lines)) {
     constexpr std::size_t beside = 10;
     const std::size_t off = map.order().apart(line.row, waiting.row);
     const bool other_visit =
@@ -260,7 +268,7 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
         if (other >= end_ || (after && off > trajectories_->centre())) continue;
         const auto line = line_near(map, other);
         if (!line || (whole && !lies_on_trace(order, other))) continue;
-        if (wanted == Line::best && margin(map, other, line->row) < 0.0) continue;
+        if (wanted == Line::best && margin(map, slot_of(other), line->row) < 0.0) continue;
         const auto offsets = trajectories_->offsets(line->line);
         const bool by_line = whole && !stands;
         const std::size_t from = by_line ? line->row : at(frame).row;

@@ -2,7 +2,6 @@
 #include "seqloop/detail/place_order.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 namespace seqloop {
 namespace {
@@ -36,24 +35,8 @@ bool PlaceOrder::begin_session() noexcept {
   return true;
 }
 
-template <class Value>
-std::size_t PlaceOrder::last_begun(Value value, Value Begin::*by) const noexcept {
-  const auto later = begins_.first(sessions_).subspan(1);
-  const auto behind = std::ranges::upper_bound(later, value, {}, by);
-  return static_cast<std::size_t>(std::distance(later.begin(), behind));
-}
-
-std::size_t PlaceOrder::session_of(std::size_t row) const noexcept {
-  return last_begun(row, &Begin::row);
-}
-
 std::size_t PlaceOrder::session_of_number(std::uint64_t number) const noexcept {
   return last_begun(number, &Begin::number);
-}
-
-std::size_t PlaceOrder::apart(std::size_t a, std::size_t b) const noexcept {
-  if (sessions_ > 1 && session_of(a) != session_of(b)) return far;
-  return a < b ? b - a : a - b;
 }
 
 std::size_t PlaceOrder::row_of_frame(std::uint64_t frame) const noexcept {

@@ -59,16 +59,16 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
   if (view.rows < least_rows || bits.size() < std::min(least_rows, view.rows)) return std::nullopt;
   std::ranges::fill(histogram_, 0U);
   for (const std::uint32_t b : bits) ++histogram_[b];
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t b = 0; b < histogram_.size(); ++b) {
-    const double x = static_cast<double>(b) * static_cast<double>(histogram_[b]);
-    sum += x;
-    squares += x * static_cast<double>(b);
+  std::uint64_t sum = 0;
+  std::uint64_t squares = 0;
+  for (std::uint64_t b = 0; b < histogram_.size(); ++b) {
+    sum += b * histogram_[b];
+    squares += b * b * histogram_[b];
   }
   const auto n = static_cast<double>(bits.size());
-  const double mean = sum / n / scanned_bits;
-  const double variance = squares / n / (scanned_bits * scanned_bits) - mean * mean;
+  const double mean = static_cast<double>(sum) / n / scanned_bits;
+  const double variance =
+      static_cast<double>(squares) / n / (scanned_bits * scanned_bits) - mean * mean;
   // Few bits make the shares noisier than more of them will be.
   const double chance = mean * (1.0 - mean);
   constexpr double least_deviation = 0.012;

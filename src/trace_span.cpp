@@ -37,7 +37,8 @@ TraceSpan::TraceSpan(Arena& arena, std::size_t most)
       on_(arena.take<On>("frames on a trace", most)) {}
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
-                                               double before, double usual, double least) noexcept {
+                                               double before, double usual, double least,
+                                               std::size_t asked) noexcept {
   double fresh = 1.0 - before;
   double on = 1.0;
   double gone = 0.0;
@@ -59,7 +60,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   }
   Backward still{1.0, 1.0, 1.0};
   Backward left{0.0, ends, 1.0};
-  for (std::size_t back = 0; back < trace.size(); ++back) {
+  for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     const auto share = [&here](const Backward& after) {
       const double is = here.on * after.on;
@@ -69,7 +70,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     still.step(here.likelier);
     left.step(here.likelier);
   }
-  return on_.first(trace.size());
+  return on_.first(asked);
 }
 
 }  // namespace seqloop

@@ -265,7 +265,9 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     const double usual = share();
     std::vector<BeliefTraces::Step> trace;
     for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
-    const auto found = span.find(trace, before, usual, 0.3);
+    const std::size_t asked = 1 + random() % frames;
+    const auto found = span.find(trace, before, usual, 0.3, asked);
+    ASSERT_EQ(found.size(), asked);
     // Frames counted from the oldest: on the trace in [first, last).
     std::vector<double> still(frames);
     std::vector<double> left(frames);
@@ -296,7 +298,7 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     }
     // Or the robot never came onto it.
     all_still += (1.0 - before) * std::pow(1.0 - begins, static_cast<double>(frames - 1));
-    for (std::size_t i = 0; i < frames; ++i) {
+    for (std::size_t i = frames - asked; i < frames; ++i) {
       EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
       EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
     }
@@ -308,7 +310,7 @@ TEST(TraceSpan, NoTraceIsTooLong) {
   TraceSpan span(memory.arena, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
     const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3)) {
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
       EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
       EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
     }

@@ -93,14 +93,22 @@ class ColumnRing {
   [[nodiscard]] std::size_t missing(std::uint64_t frame, std::size_t first,
                                     std::size_t last) const noexcept {
     std::size_t count = 0;
-    const Value* const values = values_.data() + slot(frame) * rows_;
-    for (std::size_t row = std::max(first, filled_to(frame)); row < last;) {
+    std::size_t row = std::max(first, filled_to(frame));
+    if (row >= last) return 0;
+    const std::size_t column = slot(frame);
+    const Value* const values = values_.data() + column * rows_;
+    while (row < last) {
       const std::size_t block = row / block_rows;
       const std::size_t end = std::min(last, (block + 1) * block_rows);
-      if (block_frames_[slot(frame) * blocks_ + block] != frame + 1) {
+      if (block_frames_[column * blocks_ + block] != frame + 1) {
         count += end - row;
       } else {
-        count += static_cast<std::size_t>(std::count(values + row, values + end, not_computed));
+        // As narrow as the values, so that many are counted at once.
+        std::uint16_t in_block = 0;
+        for (std::size_t r = row; r < end; ++r) {
+          in_block = static_cast<std::uint16_t>(in_block + (values[r] == not_computed ? 1 : 0));
+        }
+        count += in_block;
       }
       row = end;
     }

@@ -71,6 +71,12 @@ class PendingAnswers {
   void removed(std::size_t row) noexcept;
 
  private:
+  /// How much better one line is than another.
+  struct Lead {
+    double here;
+    double elsewhere;
+    double log_ratio;
+  };
   struct Waiting {
     std::uint64_t frame;
     bool waits;
@@ -85,17 +91,18 @@ class PendingAnswers {
     std::size_t likeliest;  // row, as it came; `none` where there was none
     double novelty;         // of the frame
     std::size_t lines;      // found
+    Lead lead;              // that `margin` took the logarithm of last
   };
 
-  [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept {
-    return waiting_[static_cast<std::size_t>(frame % waiting_.size())];
+  [[nodiscard]] std::size_t slot_of(std::uint64_t frame) const noexcept {
+    return static_cast<std::size_t>(frame % waiting_.size());
   }
-  [[nodiscard]] std::span<FoundLine> lines_of(std::uint64_t frame) noexcept {
-    return lines_.subspan(static_cast<std::size_t>(frame % waiting_.size()) * lines_kept,
-                          lines_kept);
+  [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept { return waiting_[slot_of(frame)]; }
+  [[nodiscard]] std::span<FoundLine> lines_in(std::size_t slot) noexcept {
+    return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
-  [[nodiscard]] double margin(const PlaceMap& map, std::uint64_t frame, std::size_t row) noexcept;
+  [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
   [[nodiscard]] std::size_t begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,

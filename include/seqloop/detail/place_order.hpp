@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -61,7 +62,9 @@ class PlaceOrder {
   }
 
   /// The session that a row is of; the newest for one beyond the last. Work: log sessions.
-  [[nodiscard]] std::size_t session_of(std::size_t row) const noexcept;
+  [[nodiscard]] std::size_t session_of(std::size_t row) const noexcept {
+    return sessions_ == 1 ? 0 : last_begun(row, &Begin::row);
+  }
 
   /// The session that a place is of or, if it has gone, was. Work: log sessions.
   [[nodiscard]] std::size_t session_of_number(std::uint64_t number) const noexcept;
@@ -72,7 +75,10 @@ class PlaceOrder {
   }
 
   /// Rows from one to the other; `far` between two sessions.
-  [[nodiscard]] std::size_t apart(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] std::size_t apart(std::size_t a, std::size_t b) const noexcept {
+    if (sessions_ > 1 && session_of(a) != session_of(b)) return far;
+    return a < b ? b - a : a - b;
+  }
   static constexpr std::size_t far = static_cast<std::size_t>(-1);
 
   /// The row so many rows before another, or the first of its session.
@@ -137,7 +143,11 @@ class PlaceOrder {
 
   /// The last session that begins at this value or before it. @param by what sessions rise in
   template <class Value>
-  [[nodiscard]] std::size_t last_begun(Value value, Value Begin::*by) const noexcept;
+  [[nodiscard]] std::size_t last_begun(Value value, Value Begin::*by) const noexcept {
+    const auto later = begins_.first(sessions_).subspan(1);
+    const auto behind = std::ranges::upper_bound(later, value, {}, by);
+    return static_cast<std::size_t>(std::distance(later.begin(), behind));
+  }
 
   bool straight_ = true;
   std::size_t begin_ = 0;  // where the oldest row stands in slots_

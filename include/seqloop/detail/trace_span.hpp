@@ -27,10 +27,11 @@ class TraceSpan {
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
-  /// @return frame by frame as the trace; until the next call
-  /// Work: as many exponentials as there are frames. Allocates: never.
+  /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
+  /// @return [asked] frame by frame as the trace; until the next call
+  /// Work: as many exponentials as the trace has frames. Allocates: never.
   std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
-                           double least) noexcept;
+                           double least, std::size_t asked) noexcept;
 
  private:
   /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.
