@@ -25,7 +25,7 @@ std::uint64_t open_regular(const std::filesystem::path& path, std::ifstream& str
   if (!std::filesystem::exists(status))
     throw SetupError(Fault{name, "does not exist", "check the name"});
   if (std::filesystem::is_directory(status))
-    throw SetupError(Fault{name, "is a folder, not a .npy file"});
+    throw SetupError(Fault{name, "is a folder, not a .npy file", "describe its pictures first"});
   if (!std::filesystem::is_regular_file(status))
     throw SetupError(Fault{name, "is not a regular file"});
   const std::uintmax_t size = std::filesystem::file_size(path, error);
