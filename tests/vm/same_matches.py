@@ -9,10 +9,14 @@ import sys
 
 
 def answers(path):
-    """In the order in which they became due: the frame, its status, and the place that it matched."""
+    """By frame: its status, and the place that it matched.
+
+    Which line has an answer may differ: a live run does not know its last frame beforehand.
+    """
     with open(path) as lines:
         due = [answer for line in lines for answer in json.loads(line)["answers"]]
-    return [(answer["frame"], answer["status"], answer["match"]) for answer in due]
+    found = ((answer["frame"], answer["status"], answer["match"]) for answer in due)
+    return sorted(found, key=lambda answer: answer[0])
 
 
 live, recorded = (answers(path) for path in sys.argv[1:3])
