@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// Usage: page_test.cjs BROWSER URL TOKEN [FOLDER FOR SCREENSHOTS]
+// Usage: page_test.cjs BROWSER URL TOKEN page|map [FOLDER FOR SCREENSHOTS]
+//   map: of a run with a map that lasts, whose first session is `<i>monday`
 const {assert, open, noSeriousFaults, noSidewaysScroll, start} = require('./browser.cjs');
 
-const SIZES = [[390, 844], [1280, 800], [2560, 1300]];
+const SIZES = [[390, 844], [800, 900], [1280, 800], [2560, 1300]];
 
 async function picturesAreThere(page, selector) {
   await page.waitForFunction((where) => {
@@ -12,7 +13,23 @@ async function picturesAreThere(page, selector) {
   }, selector, {timeout: 60000});
 }
 
-async function main([path, url, token, folder]) {
+/// Sessions as bands, what is saved, and saving at once.
+async function showsTheMap(page) {
+  const label = await page.getAttribute('#places', 'aria-label');
+  assert.ok(label.endsWith('; sessions <i>monday, tuesday'), label);
+  const bands = await page.evaluate(() => bandsOf(view.status.run.sessions, view.status.map.places));
+  assert.deepStrictEqual([bands[0].first, bands[0].end, bands[1].first], [0, 200, 200]);
+  const {places, frames} = await page.evaluate(() => ({places: view.status.map.places, frames: view.status.counts.frames}));
+  assert.strictEqual(bands[1].end, places);
+  assert.ok((await page.textContent('#map')).includes('2, the newest tuesday'));
+  assert.ok((await page.textContent('#sentence')).match(/\(<i>monday\)|new|Waiting/), await page.textContent('#sentence'));
+  await page.click('#save');
+  // While the run is paused, no frame tells of it.
+  await page.waitForFunction((least) => view.status.map.saved >= least, frames, {timeout: 60000});
+  assert.ok((await page.textContent('#source')).endsWith(' in m.seqloop'));
+}
+
+async function main([path, url, token, mode, folder]) {
   const browser = await start(path);
   const page = await open(browser, {viewport: {width: 1280, height: 800}, colorScheme: 'light'});
   await page.goto(`${url}/#token=${token}`);
@@ -34,7 +51,7 @@ async function main([path, url, token, folder]) {
   const picked = await page.textContent('#places-picked');
   const shown = await page.evaluate(() => [view.picked.frame, view.picked.match]);
   assert.ok(Math.abs(shown[0] - dot.frame) <= 3, 'the dot that was clicked, or one on top of it');
-  assert.ok(picked.startsWith(`Frame ${shown[0]} is place ${shown[1]}`), picked);
+  assert.ok(picked.startsWith(`Frame ${shown[0]} is place ${shown[1]}` + (mode === 'map' ? ' (<i>monday)' : '')), picked);
   await picturesAreThere(page, '#picked');
   const sources = await page.$$eval('#picked > figure > img', (all) => all.map((image) => image.src));
   assert.deepStrictEqual(sources.map((at) => new URL(at).search),
@@ -42,6 +59,14 @@ async function main([path, url, token, folder]) {
   await page.focus('#places');
   await page.keyboard.press('ArrowRight');
   assert.notStrictEqual(await page.textContent('#places-picked'), picked, 'the keyboard goes on to the next');
+
+  if (mode === 'map') await showsTheMap(page);
+  // Each name has its help text, without a mouse too.
+  await page.click('summary');
+  const helped = await page.$$eval('#words dt', (all) => all.map((term) => term.textContent));
+  const named = await page.$$eval('#counts dt, #map dt', (all) => all.map((term) => term.textContent));
+  assert.deepStrictEqual(named.filter((name) => !helped.includes(name)), []);
+  await page.click('summary');
 
   // A person's word on a loop is kept.
   const loop = page.locator('#loops li').first();
@@ -72,7 +97,7 @@ async function main([path, url, token, folder]) {
       await page.waitForTimeout(200);
       await noSidewaysScroll(page, `${width} pixels, ${colorScheme}`);
       await noSeriousFaults(page, `${width} pixels, ${colorScheme}`);
-      if (folder) await page.screenshot({path: `${folder}/page_${colorScheme}_${width}.png`, fullPage: true});
+      if (folder) await page.screenshot({path: `${folder}/${mode}_${colorScheme}_${width}.png`, fullPage: true});
     }
   }
   assert.strictEqual(papers.size, 2, 'dark is another colour');

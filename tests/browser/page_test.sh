@@ -29,18 +29,36 @@ trap cleanup EXIT
 echo 0123456789abcdef >"$work/token"
 # Names are text, whatever they hold.
 mv "$work/street/query" "$work/street/<b>query"
-"$seqloop" run --source "$work/street/<b>query" --reference "$work/street/reference" --pace live --fps 20 \
-  --budget-total 10000 --serve 127.0.0.1:0 --serve-token "$work/token" --out "$work/run.jsonl" \
-  --summary "$work/run.json" 2>"$work/said" &
-run=$!
-for _ in $(seq 600); do
-  url=$(sed -n 's/.*serving on \(http:[^ ]*\)$/\1/p' "$work/said")
-  [ -z "$url" ] || break
-  sleep 0.1
-done
-[ -n "$url" ] || { cat "$work/said"; exit 1; }
-NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$url" 0123456789abcdef $pictures
-wait "$run" || { cat "$work/said"; exit 1; }
-run=
+# served FLAGS...: a run at 20 frames a second, with a page; sets run and url
+served() {
+  "$seqloop" run --source "$work/street/<b>query" --pace live --fps 20 --budget-total 10000 "$@" \
+    --serve 127.0.0.1:0 --serve-token "$work/token" --out "$work/run.jsonl" --summary "$work/run.json" 2>"$work/said" &
+  run=$!
+  for _ in $(seq 600); do
+    url=$(sed -n 's/.*serving on \(http:[^ ]*\)$/\1/p' "$work/said")
+    [ -z "$url" ] || return 0
+    sleep 0.1
+  done
+  cat "$work/said"
+  return 1
+}
+# looked_at MODE FLAGS...: the page of such a run, until it has been stopped from there
+looked_at() {
+  local mode=$1
+  shift
+  served "$@"
+  NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$url" 0123456789abcdef "$mode" $pictures
+  wait "$run" || { cat "$work/said"; exit 1; }
+  run=
+}
+looked_at page --reference "$work/street/reference"
 "$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/report.html"
 NODE_PATH=$modules node "$source/tests/browser/report_test.cjs" "$browser" "$work/report.html" $pictures
+# A build without SQLite keeps no maps.
+if "$seqloop" run --source "$work/street/reference" --map "$work/m.seqloop" --session '<i>monday' --out /dev/null \
+  2>"$work/said"; then
+  looked_at map --map "$work/m.seqloop" --session tuesday
+  "$seqloop" map check "$work/m.seqloop"
+else
+  grep -q 'made without SQLite' "$work/said" || { cat "$work/said"; exit 1; }
+fi

@@ -55,6 +55,7 @@ Json conditions_json(const RunConditions& conditions) {
   json["conditions"] = condition_line();
   json["source"] = conditions.source.string();
   if (!conditions.reference.empty()) json["reference"] = conditions.reference.string();
+  if (!conditions.map.empty()) json["map"] = conditions.map.string();
   json["capture"] = conditions.capture;
   json["method"] = conditions.method;
   json["ds"] = conditions.config.sequence_length;

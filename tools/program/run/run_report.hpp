@@ -22,6 +22,7 @@ struct ThreadCost {
 struct RunConditions {
   std::filesystem::path source;
   std::filesystem::path reference;  ///< empty where loops are closed
+  std::filesystem::path map;        ///< file of a map that lasts; empty without one
   std::string method;
   MatcherConfig config;
   std::size_t places = 0;           ///< room in the map

@@ -99,17 +99,12 @@ void run(const RunSettings& settings, Faults faults) {
   if (!settings.pictures.empty()) make_folder(settings.pictures);
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
-  RunConditions conditions{settings.source,
-                           settings.reference,
-                           settings.matcher.method,
-                           setup.config,
-                           setup.places,
-                           setup.descriptor_size,
-                           setup.budget,
-                           setup.overload,
-                           0,
-                           setup.capture,
-                           {}};
+  RunConditions conditions{settings.source,       settings.reference,
+                           settings.map.file,     settings.matcher.method,
+                           setup.config,          setup.places,
+                           setup.descriptor_size, setup.budget,
+                           setup.overload,        0,
+                           setup.capture,         {}};
   const std::unique_ptr<Serving> serving = open_serving(settings, setup, conditions);
   std::unique_ptr<RosAnswers> ros;
   if (settings.ros) {

@@ -80,6 +80,8 @@ void RunSite::take() {
     view_.take(*snapshot, seconds_now());
     watch_->frames().pop();
   }
+  // It goes on while the loop is paused, and tells of no frame.
+  if (map_ != nullptr) view_.take_saved(map_->saved());
   while (const SmallPicture* picture = watch_->pictures().front()) {
     frames_.add(*picture);
     watch_->pictures().pop();

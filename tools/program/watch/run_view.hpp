@@ -58,6 +58,8 @@ class RunView {
   /// @param now_s seconds on any clock that goes on
   void take(const Snapshot& snapshot, double now_s);
   void take(const Answer& answer);
+  /// @param frames that are on the disk for good, newer than the newest snapshot's
+  void take_saved(std::uint64_t frames) { newest_.map.saved = frames; }
 
   /// Since when nothing has come, or the budget has been missed. @return why the run is ill; empty
   /// where it is well

@@ -51,41 +51,54 @@ function axes({context, width, height}, x0, x1, y1, words) {
   context.textAlign = 'center';
   context.textBaseline = 'top';
   for (const at of words ? ticks(x1 - x0, width < 500 ? 3 : 6) : []) {
-    if (x(at + x0) < width - 12 - context.measureText(words).width) context.fillText(Math.round(at + x0).toLocaleString('en'), x(at + x0), height - MARGIN.bottom + 5);
+    const text = Math.round(at + x0).toLocaleString('en');
+    const end = x(at + x0) + context.measureText(text).width / 2;
+    if (end + 8 < width - MARGIN.right - context.measureText(words).width) context.fillText(text, x(at + x0), height - MARGIN.bottom + 5);
   }
   context.textAlign = 'right';
   context.fillText(words, width - MARGIN.right, height - MARGIN.bottom + 5);
   return {x, y};
 }
 
+/// The bands of sessions: from which place on, and up to which; none where there is but one.
+const bandsOf = (sessions, places) => sessions.length < 2 ? [] : sessions.map(({name, first}, i) =>
+  ({name, first, end: i + 1 < sessions.length ? sessions[i + 1].first : Math.max(places, first)}));
+
 /// Sessions of the map as bands, every second one shaded.
-function drawSessions({context, width}, sessions, most, y) {
-  const right = width - MARGIN.right;
-  sessions.forEach(({name, first}, i) => {
-    const next = i + 1 < sessions.length ? sessions[i + 1].first : most;
-    const [low, high] = [y(Math.min(first, most)), y(Math.min(next, most))];
-    if (low - high < 1) return;
-    context.globalAlpha = i % 2 ? .5 : .2;
-    context.fillStyle = colour('line');
-    context.fillRect(MARGIN.left, high, right - MARGIN.left, low - high);
-    context.globalAlpha = 1;
-    if (low - high < 16) return;
-    context.fillStyle = colour('soft');
-    context.textAlign = 'right';
-    context.textBaseline = 'top';
-    context.fillText(name, right - 4, high + 3, right - MARGIN.left - 8);
+function drawSessions({context, width}, bands, y) {
+  context.fillStyle = colour('line');
+  context.globalAlpha = .45;
+  bands.forEach(({first, end}, i) => {
+    if (i % 2) context.fillRect(MARGIN.left, y(end), width - MARGIN.right - MARGIN.left, y(first) - y(end));
   });
+  context.globalAlpha = 1;
+}
+
+/// Their names, upon whatever lies there.
+function nameSessions({context}, bands, y) {
+  context.textAlign = 'left';
+  context.textBaseline = 'top';
+  context.fillStyle = colour('soft');
+  context.strokeStyle = colour('card');
+  context.lineWidth = 4;
+  for (const {name, first, end} of bands) {
+    if (y(first) - y(end) < 18) continue;
+    context.strokeText(name, MARGIN.left + 6, y(end) + 3);
+    context.fillText(name, MARGIN.left + 6, y(end) + 3);
+  }
+  context.lineWidth = 1;
 }
 
 /// Places over frames. Returns the dots for who points at them.
-function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions) {
+function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions, places) {
   const area = sized(canvas);
   const matches = answers.filter((one) => one.status === 'match' && one.match !== null);
   const last = answers.reduce((most, one) => Math.max(most, one.frame), 1);
-  const most = matches.reduce((far, one) => Math.max(far, one.match), ownPlaces ? last : 1);
+  const bands = bandsOf(sessions, places);
+  const most = matches.reduce((far, one) => Math.max(far, one.match), bands.length ? bands[bands.length - 1].end : ownPlaces ? last : 1);
   const {x, y} = axes(area, 0, last, most, 'frame');
   const {context} = area;
-  drawSessions(area, sessions, most, y);
+  drawSessions(area, bands, y);
   if (ownPlaces) {  // the drive itself: no match lies above this line
     context.strokeStyle = colour('soft');
     context.setLineDash([4, 4]);
@@ -106,10 +119,12 @@ function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions) {
     context.arc(dot.left, dot.top, 2.5, 0, 7);
     context.fill();
   }
+  nameSessions(area, bands, y);
   context.fillStyle = colour('warn');
   for (const mark of marks) {
-    context.textAlign = 'center';
-    context.fillText('▲ ' + mark.name, x(mark.frame), area.height - MARGIN.bottom - 14);
+    const right = x(mark.frame) + context.measureText('▲ ' + mark.name).width > area.width;
+    context.textAlign = right ? 'right' : 'left';
+    context.fillText(right ? mark.name + ' ▲' : '▲ ' + mark.name, x(mark.frame), area.height - MARGIN.bottom - 14);
   }
   const dot = picked && dots.find((one) => one.answer.serial === picked.serial);
   if (dot) {
@@ -119,7 +134,8 @@ function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions) {
     context.arc(dot.left, dot.top, 7, 0, 7);
     context.stroke();
   }
-  canvas.setAttribute('aria-label', `Places over frames: ${matches.length} matches in ${last} frames`);
+  canvas.setAttribute('aria-label', `Places over frames: ${matches.length} matches in ${last} frames` +
+    (bands.length ? '; sessions ' + bands.map(({name}) => name).join(', ') : ''));
   return dots;
 }
 

@@ -73,7 +73,7 @@ const list = {count: 0, page: 0, shown: ''};
 function loopItem(loop) {
   const pair = make('div', {class: 'pair'});
   const item = make('li', {class: loop.verdict, 'data-loop': loop.number}, pair, make('p', {},
-    `Loop ${number(loop.number + 1)}: frame ${number(loop.frame)} is place ${number(loop.match)}, ` +
+    `Loop ${number(loop.number + 1)}: frame ${number(loop.frame)} is place ${placeName(loop.match)}, ` +
     (loop.probability === null ? `uniqueness ${loop.uniqueness.toFixed(2)}` : `probability ${loop.probability.toFixed(3)}`) +
     (loop.time_s === null ? '' : `, at ${loop.time_s.toFixed(1)} s`)));
   if (!report) showPair(pair, loop.frame, loop.match, false);

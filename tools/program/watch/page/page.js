@@ -53,7 +53,7 @@ function showTroubles(troubles) {
 function showStatus(status) {
   const {run, counts, frame, map, health} = status;
   const gates = counts.gates;
-  const drives = [run.source, run.reference].filter(Boolean);
+  const drives = [run.source, run.reference || run.map].filter(Boolean);
   show('source', drives.map(lastPart).join(' in '));
   byId('source').title = drives.join(' in ');
   show('version', run.conditions || '');
@@ -61,7 +61,7 @@ function showStatus(status) {
   byId('health').className = status.state === 'ended' ? 'soft' : health.ok ? status.state === 'paused' ? 'warn' : 'good' : 'bad';
   show('health', report ? 'A run that is over.' : status.state === 'ended' ? 'The run has ended.' :
     health.ok ? word : 'in trouble: ' + health.why);
-  show('sentence', report ? `${number(gates.match)} of ${number(counts.frames)} frames were recognised.` : sentence(status));
+  show('sentence', report ? `${number(gates.match)} of ${number(counts.frames)} frames were recognised.` : sentence(status, placeName));
   const answer = status.answer;
   show('detail', !report && answer && answer.match !== null && answer.status !== 'new_place' ?
     [answer.probability !== null && `probability ${percent(answer.probability)}`,
@@ -75,10 +75,10 @@ function showStatus(status) {
   showTroubles(status.troubles);
   const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
   fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
-    ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', number(run.sessions.length)]]),
+    ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', sessionNames(run.sessions)]]),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
     ['k', frame ? number(frame.k) : '–'],
-    ['scanned', map.scanned ? number(map.scanned) + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
+    ['scanned', map.scanned ? `${number(map.scanned)} of ${number(map.places)}` + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
     ['memory_planned', bytes(run.memory_planned)], ['memory_used', bytes(map.memory_used)],
     ['method', run.method || '–'], ['ds', number(run.ds)]]);
   if (!report) byId('save').hidden = map.saved === undefined;
@@ -86,13 +86,23 @@ function showStatus(status) {
   if (!report) show('pause', status.state === 'paused' ? 'resume' : 'pause');
 }
 
+// Of which session a place is, where there are several.
+function placeName(place) {
+  const sessions = (view.status && view.status.run.sessions) || [];
+  const of = sessions.length > 1 && sessions.filter(({first}) => first <= place).pop();
+  return number(place) + (of ? ` (${of.name})` : '');
+}
+const sessionNames = (sessions) => number(sessions.length) +
+  (sessions.length > 1 ? `, the newest ${sessions[sessions.length - 1].name}` : '');
+
 // Places are frames of the drive itself, as far as can be told.
 const ownPlaces = () => !view.status.run.reference && !view.status.run.sessions && view.answers.every((one) => one.match === null || one.match <= one.frame);
 
 function draw() {
   const status = view.status;
   const decision = status.run.decision || {};
-  view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks, status.run.sessions || []);
+  view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks, status.run.sessions || [],
+    status.map.places);
   drawProbability(byId('probability'), view.answers, decision.min_probability);
   drawTimes(byId('times'), view.frames, (status.run.budget_ms || {}).total);
 }
@@ -110,7 +120,7 @@ function pick(dot) {
   if (!dot) return;
   view.picked = dot.answer;
   const {frame, match, probability} = dot.answer;
-  show('places-picked', `Frame ${number(frame)} is place ${number(match)}` +
+  show('places-picked', `Frame ${number(frame)} is place ${placeName(match)}` +
     (probability === null ? '.' : `, probability ${probability.toFixed(3)}.`));
   byId('picked').hidden = Boolean(report);
   showPair(byId('picked'), frame, match, true);
@@ -177,6 +187,7 @@ function listen() {
   };
 }
 
+byId('words').replaceChildren(...Object.entries(HELP).flatMap(([name, text]) => [make('dt', {}, name), make('dd', {}, text)]));
 byId('legend').replaceChildren(...['grab', 'describe', 'match'].map((name) => make('li', {class: 'swatch-' + name}, name)));
 window.addEventListener('resize', () => { if (view.status) draw(); });
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { if (view.status) draw(); });

@@ -46,21 +46,22 @@ const milliseconds = (value) => value === undefined || value === null ? '–' : 
 /// The last part of a path: `drive` of `/data/drive`.
 const lastPart = (path) => path.replace(/\/+$/, '').split('/').pop() || path;
 
-/// An answer in words.
-function sentence(status) {
+/// An answer in words. `name` says what a place is called.
+function sentence(status, name) {
   const answer = status.answer;
   const now = status.frame && status.frame.now;
   if (status.frame && status.frame.status === 'no_frame') return 'No frame comes: ' + (status.frame.fault || 'the camera is silent') + '.';
   if (!answer) return status.frame ? 'Warming up: no frame has an answer yet.' : 'No frame has come yet.';
   const at = 'frame ' + number(answer.frame);
+  const place = answer.match === null ? 'none' : 'place ' + name(answer.match);
   switch (answer.status) {
-    case 'match': return `Been here before: ${at} is place ${number(answer.match)}.`;
-    case 'unsure': return `Not sure: ${at} may be place ${number(answer.match)}, but the evidence does not suffice.`;
+    case 'match': return `Been here before: ${at} is ${place}.`;
+    case 'unsure': return `Not sure: ${at} may be ${place}, but the evidence does not suffice.`;
     case 'new_place': return 'Somewhere new, for all that is known.';
-    case 'not_unique': return `No answer: two places look alike; ${at} looks most like place ${number(answer.match)}.`;
+    case 'not_unique': return `No answer: two places look alike; ${at} looks most like ${place}.`;
     case 'no_candidate': return 'No answer: there is nothing to compare with yet.';
     case 'frame_error': return `No answer: ${at} could not be read` + (status.frame.fault ? ': ' + status.frame.fault : '') + '.';
-    default: return now ? `Waiting for more evidence; likeliest is place ${number(now.place)}.` : 'Warming up.';
+    default: return now ? `Waiting for more evidence; likeliest is place ${name(now.place)}.` : 'Warming up.';
   }
 }
 
