@@ -24,6 +24,64 @@ Numbers numbers_of(const Database& database, std::int64_t session, std::int64_t 
   return {first, (next.null(0) ? end : next.integer(0)) - 1};
 }
 
+/// Throws SetupError: there is no such session.
+SessionFacts named(const MapFile& map, const std::string& session) {
+  std::string names;
+  for (const SessionFacts& known : map.sessions()) {
+    if (known.name == session) return known;
+    names += (names.empty() ? "" : ", ") + known.name;
+  }
+  throw SetupError({map.path().string(), "there is no session '" + session + "'",
+                    names.empty() ? "it has none" : "it has: " + names});
+}
+
+/// @return rows that went
+template <class State, class... Values>
+std::int64_t drop(State& map, const std::string& from, const Values&... values) {
+  Statement(map.database, "DELETE FROM " + from).with(values...).run();
+  return sqlite3_changes(map.database.handle());
+}
+
+/// The places of a session, and what is kept of each.
+template <class State>
+void drop_places(State& map, std::int64_t session) {
+  const Numbers numbers = numbers_of(map.database, session, map.counts.next_place);
+  (void)drop(map, "removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+  map.counts.thumbnails -=
+      drop(map, "thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+  (void)drop(map, "block WHERE session = ?", session);
+  (void)drop(map, "statistics WHERE session = ?", session);
+}
+
+/// @return null where it has none
+const Successor* successor_of(std::span<const Successor> successors, std::uint64_t place) {
+  const auto found = std::ranges::lower_bound(successors, place, {}, &Successor::place);
+  return found != successors.end() && found->place == place ? &*found : nullptr;
+}
+
+/// Visits of places that go lead to those that stand for them; a person's word stays as it was
+/// said.
+template <class State>
+void lead_on(State& map, std::span<const Successor> successors) {
+  Statement rows(map.database,
+                 "SELECT id, session, frame, other, probability FROM link WHERE place IS NULL");
+  std::vector<std::pair<std::int64_t, SavedLink>> changed;
+  while (rows.step()) {
+    SavedLink visit{rows.integer(1), static_cast<std::uint64_t>(rows.integer(2)), std::nullopt,
+                    static_cast<std::uint64_t>(rows.integer(3)), rows.real(4)};
+    const Successor* next = successor_of(successors, visit.other);
+    if (next == nullptr || !is_visit(visit)) continue;
+    visit.other = next->by;
+    visit.probability = std::min(visit.probability, next->probability);
+    changed.emplace_back(rows.integer(0), visit);
+  }
+  Statement update(map.database,
+                   "UPDATE link SET other = ?, probability = ?, checksum = ? WHERE id = ?");
+  for (const auto& [id, visit] : changed) {
+    update.with(signed_of(visit.other), visit.probability, link_sum(id, visit), id).run();
+  }
+}
+
 /// @return the name, with a number behind it where it is taken
 std::string free_name(const std::vector<SessionFacts>& taken, const std::string& name) {
   std::string free = name;
@@ -37,29 +95,42 @@ std::string free_name(const std::vector<SessionFacts>& taken, const std::string&
 
 void MapFile::forget(const std::string& session) {
   State& map = *state_;
-  const std::vector<SessionFacts> all = sessions();
-  const auto found = std::ranges::find(all, session, &SessionFacts::name);
-  if (found == all.end()) {
-    std::string names;
-    for (const SessionFacts& known : all) names += (names.empty() ? "" : ", ") + known.name;
-    throw SetupError({map.path.string(), "there is no session '" + session + "'",
-                      names.empty() ? "it has none" : "it has: " + names});
-  }
+  const SessionFacts facts = named(*this, session);
   map.saving([&] {
-    const Numbers numbers = numbers_of(map.database, found->id, map.counts.next_place);
-    const auto drop = [&map](const std::string& from, const auto&... values) -> std::int64_t {
-      Statement(map.database, "DELETE FROM " + from).with(values...).run();
-      return sqlite3_changes(map.database.handle());
-    };
-    (void)drop("removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
-    map.counts.thumbnails -=
-        drop("thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+    drop_places(map, facts.id);
     // Links of other sessions to its places stay: they say which of theirs are visits of one place.
-    map.counts.links -= drop("link WHERE session = ?", found->id);
-    (void)drop("block WHERE session = ?", found->id);
-    (void)drop("statistics WHERE session = ?", found->id);
-    (void)drop("session WHERE id = ?", found->id);
+    map.counts.links -= drop(map, "link WHERE session = ?", facts.id);
+    (void)drop(map, "session WHERE id = ?", facts.id);
   });
+}
+
+std::size_t MapFile::retire(const std::string& session, std::span<const Successor> successors,
+                            std::uint64_t every) {
+  State& map = *state_;
+  SessionFacts facts = named(*this, session);
+  std::vector<SavedLink> visits;
+  map.saving([&] {
+    const Numbers numbers = numbers_of(map.database, facts.id, map.counts.next_place);
+    map.read(
+        numbers.first, numbers.last,
+        [&](const PlaceBlock& block) {
+          for (const PlaceRecord& record : block.records) {
+            const Successor* next = successor_of(successors, record.number);
+            if (next == nullptr) continue;
+            if (!visits.empty() && record.frame - visits.back().frame < every) continue;
+            visits.push_back({facts.id, record.frame, std::nullopt, next->by, next->probability});
+          }
+        },
+        {});
+    drop_places(map, facts.id);
+    map.counts.links -= drop(map, "link WHERE session = ? AND place IS NOT NULL", facts.id);
+    lead_on(map, successors);
+    map.insert_links(facts.id, visits);
+    facts.places = 0;
+    facts.statistics = false;
+    map.save_session(facts);
+  });
+  return visits.size();
 }
 
 std::uint64_t MapFile::add(const MapFile& from) {
@@ -145,15 +216,16 @@ void MapFile::compact() {
     }
     write();
     map.database.execute("DELETE FROM removed");
-    Statement links(map.database, "SELECT id, other FROM link");
+    // A link of a place that is there stays, even to one that is gone: others may lead there, too.
+    Statement links(map.database, "SELECT id, coalesce(place, other) FROM link");
     std::vector<std::int64_t> loose;
     while (links.step()) {
       if (!std::ranges::binary_search(living, static_cast<std::uint64_t>(links.integer(1)))) {
         loose.push_back(links.integer(0));
       }
     }
-    Statement drop(map.database, "DELETE FROM link WHERE id = ?");
-    for (const std::int64_t id : loose) drop.with(id).run();
+    Statement unlink(map.database, "DELETE FROM link WHERE id = ?");
+    for (const std::int64_t id : loose) unlink.with(id).run();
     map.counts.links -= static_cast<std::int64_t>(loose.size());
   });
   try {

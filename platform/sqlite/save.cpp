@@ -94,6 +94,23 @@ void MapFile::State::remove_place(std::int64_t number) {
   if (!left.empty()) insert_block(owner.id, left, bytes);
 }
 
+void MapFile::State::insert_links(std::int64_t session, std::span<const SavedLink> links) {
+  if (links.empty()) return;
+  Statement insert(database, "INSERT INTO link VALUES(?, ?, ?, ?, ?, ?, ?)");
+  counts.links += signed_of(links.size());
+  std::int64_t id = database.number("SELECT max(id) FROM link");
+  for (SavedLink link : links) {
+    link.session = session;
+    std::optional<std::int64_t> place;
+    if (link.place) place = signed_of(*link.place);
+    ++id;
+    insert
+        .with(id, session, signed_of(link.frame), place, signed_of(link.other), link.probability,
+              link_sum(id, link))
+        .run();
+  }
+}
+
 std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_ns,
                                     const std::string& settings) {
   const std::string file = state_->path.string();
@@ -126,21 +143,7 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
                        batch.places.subspan(i * size, count * size));
     }
     if (!batch.records.empty()) map.counts.next_place = signed_of(batch.records.back().number) + 1;
-    if (!batch.links.empty()) {
-      Statement insert(map.database, "INSERT INTO link VALUES(?, ?, ?, ?, ?, ?, ?)");
-      map.counts.links += signed_of(batch.links.size());
-      std::int64_t id = map.database.number("SELECT max(id) FROM link");
-      for (SavedLink link : batch.links) {
-        link.session = session;
-        std::optional<std::int64_t> place;
-        if (link.place) place = signed_of(*link.place);
-        ++id;
-        insert
-            .with(id, session, signed_of(link.frame), place, signed_of(link.other),
-                  link.probability, link_sum(id, link))
-            .run();
-      }
-    }
+    map.insert_links(session, batch.links);
     if (!batch.thumbnails.empty()) {
       Statement insert(map.database, "INSERT OR IGNORE INTO thumbnail VALUES(?, ?, ?)");
       for (const SavedThumbnail& picture : batch.thumbnails) {

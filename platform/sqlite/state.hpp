@@ -76,6 +76,8 @@ struct MapFile::State {
   [[nodiscard]] std::string session_name(std::int64_t id) const;
   void insert_block(std::int64_t session, std::span<const PlaceRecord> records,
                     std::span<const std::byte> places);
+  /// @param links `session` is not looked at
+  void insert_links(std::int64_t session, std::span<const SavedLink> links);
   /// Removes one place, where there is such a one, in the open transaction.
   void remove_place(std::int64_t number);
   /// Blocks whose first number is in a range; what was removed of them is left out.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Maps that last, through the real binary.
+#include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -95,6 +97,47 @@ TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
   EXPECT_NE(full.out.find("\"newest\":119,"), std::string::npos) << "the run went on";
   // What had been saved is there, and the rest has room again.
   expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
+}
+
+TEST_F(LastingMaps, OfSessionsThatWereSeenOftenEnoughVisitsStay) {
+  std::string last;
+  for (unsigned n = 0; n < 8; ++n) {
+    const std::string number = std::to_string(n);
+    write("drive.npy", oracle::drive(1, 300, 40, 0.1F + 0.01F * static_cast<float>(n)));
+    last = run("match --query drive.npy --map m.seqloop --session s" + number + " --out m.csv").err;
+  }
+  EXPECT_NE(last.find("the map has 1800 places now"), std::string::npos) << last;
+  EXPECT_NE(last.find("the places of 's1' went"), std::string::npos) << last;
+  expect_done("map check m.seqloop");
+  const auto info = nlohmann::json::parse(run("map info m.seqloop --json").out);
+  const auto& sessions = info["sessions"];
+  ASSERT_EQ(sessions.size(), 8U);
+  for (std::size_t n = 0; n < 8; ++n) {
+    SCOPED_TRACE(n);
+    EXPECT_EQ(sessions[n]["frames"], 300);
+    EXPECT_EQ(sessions[n]["places"], n < 2 ? 0 : 300);
+    EXPECT_EQ(sessions[n]["visits"].get<int>() > 10, n < 2) << sessions[n]["visits"];
+  }
+  expect_done("map export m.seqloop --out folder");
+  std::istringstream links(test::read_all(file("folder/links.csv")));
+  std::size_t visits = 0;
+  for (std::string line; std::getline(links, line);) {
+    std::vector<double> cells;  // session, frame, visit, place, other, probability
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(std::atof(cell.c_str()));
+    if (cells.at(2) != 1.0) continue;
+    ++visits;
+    EXPECT_LE(cells[0], 2.0) << line;
+    EXPECT_GE(cells[4], 600.0) << line << ": a place that is there";
+    const double frame = std::fmod(cells[4], 300.0);
+    EXPECT_NEAR(frame, cells[1], 20.0) << line << ": the same spot";
+    EXPECT_GE(cells[5], 0.5) << line;
+  }
+  EXPECT_EQ(visits,
+            sessions[0]["visits"].get<std::size_t>() + sessions[1]["visits"].get<std::size_t>());
+  expect_done("map import folder --out again.seqloop");
+  const auto again = nlohmann::json::parse(run("map info again.seqloop --json").out);
+  EXPECT_EQ(again["sessions"], sessions);
 }
 
 TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {

@@ -10,13 +10,14 @@
 namespace seqloop::program {
 namespace {
 
-using Sessions = std::vector<std::vector<std::uint64_t>>;
+using Places = std::vector<Sighting>;
+using Sessions = std::vector<Places>;
 using Indices = std::vector<std::size_t>;
 
 /// Places that are visits of these numbers on.
-std::vector<std::uint64_t> lap(std::uint64_t first, std::size_t places) {
-  std::vector<std::uint64_t> all(places);
-  for (std::size_t i = 0; i < places; ++i) all[i] = first + i;
+Places lap(std::uint64_t first, std::size_t places) {
+  Places all(places);
+  for (std::size_t i = 0; i < places; ++i) all[i].first = first + i;
   return all;
 }
 
@@ -35,20 +36,45 @@ TEST(Superseded, AreSessionsThatSixLaterOnesHaveSeen) {
 
 TEST(Superseded, ASessionStaysWhileAStretchOfItWasSeenNowhereElse) {
   Sessions sessions(7, lap(0, 1'000));
-  std::vector<std::uint64_t>& oldest = sessions.front();
-  for (std::size_t i = 0; i < 60; ++i) oldest[400 + i] = 9'000 + i;
+  Places& oldest = sessions.front();
+  for (std::size_t i = 0; i < 60; ++i) oldest[400 + i].first = 9'000 + i;
   EXPECT_EQ(superseded(sessions), Indices{0});
-  oldest[460] = 9'060;
+  oldest[460].first = 9'060;
   EXPECT_EQ(superseded(sessions), Indices{}) << "61 places in a row";
 }
 
 TEST(Superseded, ASessionStaysWhileTwoFifthsOfItWasSeenNowhereElse) {
   Sessions sessions(7, lap(0, 1'000));
-  std::vector<std::uint64_t>& oldest = sessions.front();
-  for (std::size_t i = 0; i < 400; ++i) oldest[i / 50 * 125 + i % 50] = 9'000 + i;
+  Places& oldest = sessions.front();
+  for (std::size_t i = 0; i < 400; ++i) oldest[i / 50 * 125 + i % 50].first = 9'000 + i;
   EXPECT_EQ(superseded(sessions), Indices{0});
-  oldest[960] = 9'900;
+  oldest[960].first = 9'900;
   EXPECT_EQ(superseded(sessions), Indices{});
+}
+
+TEST(Successors, AreTheNewestPlacesOfTheSameSpotThatStay) {
+  const Places goes{{100, 100, 1.0}, {101, 20, .8}, {102, 500, 1.0}};
+  const Places stays{{300, 20, .99}, {310, 20, .7}, {305, 100, .6}};
+  const std::vector<sqlite::Successor> found = successors(goes, stays);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].place, 100U);
+  EXPECT_EQ(found[0].by, 305U);
+  EXPECT_EQ(found[0].probability, .6) << "its link is the less sure one";
+  EXPECT_EQ(found[1].by, 310U);
+  EXPECT_EQ(found[1].probability, .7);
+  EXPECT_EQ(found[2].place, 102U);
+  EXPECT_EQ(found[2].by, 310U) << "as its neighbour's";
+  EXPECT_TRUE(successors(goes, {}).empty());
+}
+
+TEST(Successors, AreThoseOfNeighboursUpToSixteenPlacesAway) {
+  Places goes(100);
+  for (std::size_t i = 0; i < goes.size(); ++i) goes[i] = {1'000 + i, 1'000 + i};
+  const std::vector<sqlite::Successor> found = successors(goes, Places{{5'000, 1'040, .9}});
+  ASSERT_EQ(found.size(), 33U);
+  EXPECT_EQ(found.front().place, 1'024U);
+  EXPECT_EQ(found.back().place, 1'056U);
+  for (const sqlite::Successor& next : found) EXPECT_EQ(next.by, 5'000U);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ class RecordedRun {
       }
       if (s == 1) forget(map, "drive 0");
       if (s == 2) merge(map);
+      if (s == 3) retire(map, "drive 2");
       if (s % 2 == 1) {
         map.compact();
         acknowledged(map);
@@ -70,6 +71,16 @@ class RecordedRun {
 
   void forget(MapFile& map, const std::string& name) {
     map.forget(name);
+    acknowledged(map);
+  }
+
+  void retire(MapFile& map, const std::string& name) {
+    std::vector<sqlite::Successor> successors;
+    const std::uint64_t end = map.next_place();
+    for (std::uint64_t place = 0; place < end; place += 2) {
+      successors.push_back({place, end - 1, .75});
+    }
+    EXPECT_GT(map.retire(name, successors, 3), 0U);
     acknowledged(map);
   }
 

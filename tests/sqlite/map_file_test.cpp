@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <map>
 #include <random>
 #include <set>
 
@@ -212,6 +213,88 @@ TEST_F(Map, ForgetsOneSessionAlone) {
   (void)content(map);
   const std::string fault = setup_error([&] { map.forget("sunday"); });
   EXPECT_TRUE(says(fault, "there is no session 'sunday'; it has: tuesday, monday"));
+}
+
+TEST_F(Map, OfASessionThatRetiresVisitsAreKept) {
+  make();
+  MapFile map = open();
+  const std::int64_t wednesday = map.begin_session("wednesday", 0, "");
+  test::save_sample(map, wednesday, 0, 10);
+  const std::vector<sqlite::SavedLink> more{{0, 30, std::nullopt, 41, .7},
+                                            {0, 31, std::nullopt, 42, sqlite::person_accepted},
+                                            {0, 32, std::nullopt, 43, .9}};
+  map.save(wednesday, {.frames = 40, .links = more});
+  const std::vector<sqlite::Successor> successors{
+      {40, 80, .9}, {41, 81, .8}, {42, 82, .7}, {44, 84, .6}, {49, 85, .5}};
+  std::map<std::uint64_t, std::uint64_t> frames;  // of tuesday, by place
+  map.read([&](const sqlite::PlaceBlock& block) {
+    for (const sqlite::PlaceRecord& record : block.records) {
+      if (block.session == 2) frames[record.number] = record.frame;
+    }
+  });
+  EXPECT_EQ(map.retire("tuesday", successors, 3), 3U) << "40 stands for 41 and 42";
+  EXPECT_EQ(numbers(map).size(), 50U);
+  EXPECT_FALSE(numbers(map).contains(40));
+  EXPECT_FALSE(map.thumbnail(40));
+  EXPECT_FALSE(map.statistics(2));
+  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
+  ASSERT_EQ(sessions.size(), 3U);
+  EXPECT_EQ(sessions[1].name, "tuesday");
+  EXPECT_EQ(sessions[1].places, 0U);
+  EXPECT_GT(sessions[1].frames, 40U);
+  std::vector<sqlite::SavedLink> visits;
+  const auto look = [&] {
+    visits.clear();
+    map.read_links([&](const sqlite::SavedLink& link) {
+      if (link.session == 2) {
+        EXPECT_FALSE(link.place);
+      }
+      if (link.other >= 80 && !link.place) visits.push_back(link);
+    });
+  };
+  look();
+  const std::vector<sqlite::SavedLink> expected{{3, 30, std::nullopt, 81, .7},
+                                                {2, frames[40], std::nullopt, 80, .9},
+                                                {2, frames[44], std::nullopt, 84, .6},
+                                                {2, frames[49], std::nullopt, 85, .5}};
+  EXPECT_EQ(visits, expected) << "what led to 41 leads to what stands for it";
+  std::size_t words = 0;
+  map.read_links([&words](const sqlite::SavedLink& link) {
+    if (link.other == 42 && link.probability == sqlite::person_accepted) ++words;
+  });
+  EXPECT_EQ(words, 1U) << "a person's word stays as it was said";
+  (void)content(map);
+  map.compact();
+  look();
+  EXPECT_EQ(visits, expected);
+  (void)content(map);
+  {
+    MapFile copy = MapFile::open(file("copy.seqloop"), test::sample_form());
+    (void)copy.add(map);
+    EXPECT_EQ(copy.sessions()[1].frames, sessions[1].frames);
+    (void)content(copy);
+  }
+  map.forget("tuesday");
+  look();
+  EXPECT_EQ(visits, (std::vector<sqlite::SavedLink>{expected[0]}));
+  (void)content(map);
+}
+
+TEST_F(Map, PackingKeepsWhatPlacesAreLinkedTo) {
+  make();
+  MapFile map = open();
+  const auto linked = [&map] {
+    std::vector<sqlite::SavedLink> links;
+    map.read_links([&](const sqlite::SavedLink& link) {
+      if (link.place) links.push_back(link);
+    });
+    return links;
+  };
+  map.forget("monday");
+  const std::vector<sqlite::SavedLink> before = linked();
+  ASSERT_TRUE(std::ranges::any_of(before, [](const auto& link) { return link.other < 40; }));
+  map.compact();
+  EXPECT_EQ(linked(), before) << "they say which of tuesday's places are one";
 }
 
 TEST_F(Map, TakesInAnotherBehindItsOwn) {

@@ -123,11 +123,14 @@ class SqliteMap : public LastingMap {
 
   [[nodiscard]] std::string summary() const override {
     if (!writer_) return fmt::format("the map has {} places; it was only read", map_->size());
-    std::string text =
-        fmt::format("the map has {} places now; {} frames are saved, {} of them as places",
-                    map_->size(), writer_->saved(), writer_->saved_places());
-    for (const std::string& name : writer_->forgotten()) {
-      text += fmt::format("; '{}' went, since what it saw was seen often enough later", name);
+    std::string text = fmt::format(
+        "the map has {} places now; {} frames are saved, {} of them as places",
+        map_->size() - writer_->retired().places, writer_->saved(), writer_->saved_places());
+    for (const std::string& name : writer_->retired().sessions) {
+      text += fmt::format("; the places of '{}' went, since later ones show the same", name);
+    }
+    if (const std::size_t visits = writer_->retired().visits; visits > 0) {
+      text += fmt::format("; {} visits are left of them", visits);
     }
     if (const auto missing = writer_->missing_thumbnails(); missing > 0) {
       text += fmt::format("; there was no room for {} thumbnails", missing);

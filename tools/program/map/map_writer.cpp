@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "program/map/superseded.hpp"
-
 namespace seqloop::program {
 namespace {
 
@@ -311,25 +309,8 @@ std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const
   hand_over_statistics(detector);
   ending_ = true;
   if (!save()) return why_;
-  if (novel_) forget_superseded();
+  if (novel_) retired_ = retire_superseded(*stored_, *map_, linked_, none);
   return std::nullopt;
-}
-
-/// Lets sessions go from the file of which later ones, this drive among them, have seen enough.
-void MapWriter::forget_superseded() {
-  const PlaceOrder& order = map_->order();
-  std::vector<std::vector<std::uint64_t>> sessions(order.sessions());
-  for (std::size_t row = 0; row < order.size(); ++row) {
-    const std::uint64_t linked = linked_[order.slot(row)];
-    sessions[order.session_of(row)].push_back(linked != none ? linked : map_->first_visit(row));
-  }
-  try {
-    for (const std::size_t session : superseded(sessions)) {
-      stored_->file().forget(stored_->name(session));
-      forgotten_.push_back(stored_->name(session));
-    }
-  } catch (const std::exception&) {  // what stays for now goes after the next drive
-  }
 }
 
 void MapWriter::tell(std::string text) {

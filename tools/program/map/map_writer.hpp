@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "program/map/map_settings.hpp"
+#include "program/map/retire.hpp"
 #include "program/map/stored_map.hpp"
 #include "program/map/thumbnails.hpp"
 #include "program/map/verdict.hpp"
@@ -64,8 +65,8 @@ class MapWriter {
   /// Keeps a person's word on an answer, likewise.
   bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict);
 
-  /// Names of sessions that the drive has superseded, and that are gone.
-  [[nodiscard]] const std::vector<std::string>& forgotten() const noexcept { return forgotten_; }
+  /// Sessions that the drive has superseded, and whose places are gone.
+  [[nodiscard]] const Retired& retired() const noexcept { return retired_; }
 
   /// Places that have no thumbnail for lack of room.
   [[nodiscard]] std::uint64_t missing_thumbnails() const noexcept {
@@ -109,7 +110,6 @@ class MapWriter {
   bool save();
   void save_once();
   [[nodiscard]] bool left() const;
-  void forget_superseded();
   void tell(std::string text);
   [[nodiscard]] std::size_t words();
 
@@ -149,7 +149,7 @@ class MapWriter {
   std::atomic<std::int64_t> saving_since_ns_{0};  // on the steady clock; 0: nothing is saved now
   bool failing_ = false;
   std::string why_;
-  std::vector<std::string> forgotten_;
+  Retired retired_;
   std::vector<std::byte> bytes_;
   std::vector<sqlite::PlaceRecord> records_;
   std::vector<sqlite::SavedLink> batch_links_;

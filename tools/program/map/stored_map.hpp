@@ -39,6 +39,7 @@ class StoredMap {
   [[nodiscard]] bool read_only() const noexcept { return read_only_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   [[nodiscard]] sqlite::MapFile& file() noexcept { return file_; }
+  [[nodiscard]] const sqlite::MapFile& file() const noexcept { return file_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
 
   /// The name of a session, as the map counts them: those without places are not counted.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -40,12 +41,17 @@ void info(const MapSettings& settings) {
   const sqlite::MapForm& form = map.form();
   const std::uintmax_t bytes = fs::file_size(file);
   const sqlite::ThumbnailFacts thumbnails = map.thumbnail_facts();
+  std::map<std::int64_t, std::uint64_t> visits;  // by session
+  map.read_links([&visits](const sqlite::SavedLink& link) {
+    if (sqlite::is_visit(link)) ++visits[link.session];
+  });
   if (settings.json) {
     auto list = nlohmann::ordered_json::array();
     for (const sqlite::SessionFacts& facts : sessions) {
       list.push_back({{"name", facts.name},
                       {"places", facts.places},
                       {"frames", facts.frames},
+                      {"visits", visits[facts.id]},
                       {"began_ns", facts.began_ns},
                       {"settings", facts.settings}});
     }
@@ -65,11 +71,12 @@ void info(const MapSettings& settings) {
   std::string text = fmt::format(
       "{} places of {} bytes, descriptors of {} values\nform: {}\ndescribed by: {}\nfile: {} "
       "bytes, {} thumbnails take {} of them\n\n"
-      "      places      frames  session\n",
+      "      places      frames      visits  session\n",
       places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer, bytes,
       thumbnails.count, thumbnails.bytes);
   for (const sqlite::SessionFacts& facts : sessions) {
-    text += fmt::format("{:>12}{:>12}  {}\n", facts.places, facts.frames, printable(facts.name));
+    text += fmt::format("{:>12}{:>12}{:>12}  {}\n", facts.places, facts.frames, visits[facts.id],
+                        printable(facts.name));
   }
   fmt::print("{}", printable_lines(text));
 }

@@ -70,6 +70,18 @@ struct SavedLink {
   bool operator==(const SavedLink&) const = default;
 };
 
+/// Whether the frame became no place of its own; a person's word is no visit.
+[[nodiscard]] inline bool is_visit(const SavedLink& link) noexcept {
+  return !link.place && link.probability > person_silent && link.probability < person_accepted;
+}
+
+/// A place that another one stands for, since both show the same.
+struct Successor {
+  std::uint64_t place = 0;
+  std::uint64_t by = 0;      ///< a place that stays
+  double probability = 0.0;  ///< that they are one
+};
+
 struct SavedThumbnail {
   std::uint64_t place = 0;
   std::vector<std::byte> jpeg;
@@ -179,6 +191,15 @@ class MapFile {
   /// links to places of it, which say which of theirs are one place.
   /// Throws SetupError: no such name; SaveError.
   void forget(const std::string& session);
+
+  /// Removes the places of a session with their thumbnails, links and statistics. The session
+  /// itself stays, and of its frames visits of the places that stand for theirs; visits that led to
+  /// its places lead to those, too. Links of other sessions to its places stay, as in `forget`.
+  /// @param successors of its places, rising; those that have none leave no visit
+  /// @param every frames that one visit is for, 1 or more: that of the first of them is kept
+  /// @return visits that are kept. Throws SetupError: no such name, damaged; SaveError.
+  std::size_t retire(const std::string& session, std::span<const Successor> successors,
+                     std::uint64_t every);
 
   /// Copies all sessions of another map behind this one's. A name that is taken gets a number.
   /// @return what is added to its places' numbers. Throws SetupError: another form, damaged;
