@@ -34,6 +34,13 @@ constexpr std::size_t neighbours = 16;
 // Bits that differ between pictures that have nothing in common.
 constexpr std::uint32_t chance = DescriptorRows::close_words * 64 / 2;
 
+/// Of so many, known here, that they are compared side by side; signed, as every processor can.
+std::uint32_t least_of(std::span<const std::uint32_t, neighbours> bits) {
+  auto least = static_cast<std::int32_t>(bits[0]);
+  for (const std::uint32_t b : bits) least = std::min(least, static_cast<std::int32_t>(b));
+  return static_cast<std::uint32_t>(least);
+}
+
 std::size_t rows_a_scan(const MatcherConfig& config, std::size_t places) {
   return std::min(config.relocalising.rows_scanned, places);
 }
@@ -113,8 +120,8 @@ std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
   std::size_t found = 0;
   for (std::size_t first = 0; first < bits.size(); first += neighbours) {
     const auto some = bits.subspan(first, std::min(neighbours, bits.size() - first));
-    std::uint32_t least = some.front();
-    for (const std::uint32_t differing : some) least = std::min(least, differing);
+    const std::uint32_t least = some.size() == neighbours ? least_of(some.first<neighbours>())
+                                                          : *std::ranges::min_element(some);
     if (found == looked_at_closely && least >= best_[found - 1].bits) continue;
     const auto where = std::distance(some.begin(), std::ranges::find(some, least));
     const std::size_t row = (begin + first + static_cast<std::size_t>(where)) % rows;

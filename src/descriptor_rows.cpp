@@ -87,6 +87,8 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
       quantised_(arena.take<std::int8_t>(
           "what a sketch is made of",
           words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
+      both_(arena.take<std::int8_t>("what a sketch is made of",
+                                    words_ > 0 ? std::uint64_t{2} * form.size : 0)),
       sketched_values_(
           arena.take<SketchedValue>("what a sketch is made of", sketched_values(words_))),
       sketches_(arena.take<std::uint64_t>(names.sketches, std::uint64_t{rows} * words_)),
@@ -111,7 +113,8 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
 
 void DescriptorRows::sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept {
   if (words_ == 0) return;
-  sketch(bytes.first(form_.size), sketched_values_, sketches_.subspan(row * words_, words_));
+  with_negative(bytes.first(form_.size), both_);
+  sketch(both_, sketched_values_, sketches_.subspan(row * words_, words_));
   copy_scanned(row);
 }
 
@@ -268,12 +271,6 @@ void DescriptorRows::scan(const DescriptorRows& queries, std::size_t query, std:
   if (out.empty()) return;
   kernels_->hamming_column(&queries.scanned_[query * scanned_words],
                            &scanned_[first * scanned_words], scanned_words, out.size(), out.data());
-}
-
-std::uint32_t DescriptorRows::look_closely(const DescriptorRows& queries, std::size_t query,
-                                           std::size_t row) const noexcept {
-  return kernels_->hamming(&queries.sketches_[query * words_], &sketches_[row * words_],
-                           close_words);
 }
 
 void DescriptorRows::prefetch_sketches(std::size_t first, std::size_t count) const noexcept {

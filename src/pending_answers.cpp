@@ -2,6 +2,7 @@
 #include "seqloop/detail/pending_answers.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "seqloop/detail/portable_math.hpp"
@@ -32,7 +33,7 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
       least_(static_cast<double>(config.min_probability)),
       span_(arena, PlaceBelief::depth(config)) {
   const bool used = config.decision == Decision::probability;
-  const std::size_t kept = config.patience + config.sequence_length + 2;
+  const std::size_t kept = std::bit_ceil(PlaceBelief::depth(config) + config.sequence_length + 1);
   waiting_ = arena.take<Waiting>("frames that wait for their answer", used ? kept : 0);
   lines_ = arena.take<FoundLine>("lines found for them", used ? kept * lines_kept : 0);
   answers_ = arena.take<Answer>(

@@ -47,6 +47,7 @@ PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
 std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   sketches_ = 0;
   likeliest_.reset();
+  prefetch(view);
   const std::optional<Scene> scene = gauge_.look(view, sketches_);
   if (!scene) {
     restart();
@@ -66,6 +67,15 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   return sketches_;
 }
 
+/// Has the processor fetch what weighing the rows found will read and their finding has not.
+void PlaceBelief::prefetch(const SceneView& view) noexcept {
+  const PlaceOrder& order = view.map->order();
+  for (const CandidateProposals::Alike& found : view.seen->found()) {
+    if (found.row + apart >= view.rows) continue;
+    view.map->rows().prefetch_sketches(order.slot(found.row + apart), 1);
+  }
+}
+
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
 void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) noexcept {
   moved_count_ = 0;
@@ -76,7 +86,7 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
       if (next[by] < count_) row = std::min(row, rows_[next[by]].row + by);
     }
     if (row == static_cast<std::size_t>(-1)) break;
-    Hypothesis moved;
+    std::size_t likeliest = most;
     double best = 0.0;
     double mass = 0.0;
     bool reached = false;
@@ -88,15 +98,16 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
       const double part = kernel[by] * rows_[from].mass;
       if (part > best) {
         best = part;
-        moved = rows_[from];
-        moved.parent = static_cast<std::uint32_t>(from);
+        likeliest = from;
       }
       mass += part;
     }
     if (!reached) continue;
+    Hypothesis& moved = moved_[moved_count_++];
+    moved = likeliest < most ? rows_[likeliest] : Hypothesis{};
     moved.row = row;
     moved.mass = mass;
-    moved_[moved_count_++] = moved;
+    moved.parent = likeliest < most ? static_cast<std::uint32_t>(likeliest) : BeliefTraces::none;
   }
   if (moved_count_ > old_most) keep_likeliest();
 }

@@ -13,9 +13,6 @@ namespace {
 // Rows among which the one that is missed least goes, each time a full map thins out.
 constexpr std::size_t thinned_among = 64;
 
-// Rows so near each other are one place.
-constexpr std::uint64_t beside = 10;
-
 // Between two rows that are linked, so near each other, all are.
 constexpr std::size_t most_between = 40;
 
@@ -147,9 +144,7 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
   }
 }
 
-bool PlaceMap::same_place(std::size_t a, std::size_t b) const noexcept {
-  if (order_.apart(a, b) <= beside) return true;
-  if (first_visits_.empty()) return false;
+bool PlaceMap::same_first_visit(std::size_t a, std::size_t b) const noexcept {
   const std::uint64_t first = first_visit(a);
   const std::uint64_t second = first_visit(b);
   return (first < second ? second - first : first - second) <= beside &&

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/detail/sketch.hpp"
 
+#include <algorithm>
+
 namespace seqloop {
 namespace {
 
@@ -20,23 +22,28 @@ void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::uint64_t random = random_number(i);
     const std::uint64_t place = ((random >> 32U) * descriptor_size) >> 32U;
-    out[i] = {static_cast<std::uint32_t>(place) & 0x7FFFFFFFU, (random & 1U) != 0 ? 0U : 1U};
+    const std::uint64_t subtracted = (random & 1U) != 0 ? 0 : descriptor_size;
+    out[i] = static_cast<SketchedValue>(place + subtracted);
   }
 }
 
-void sketch(std::span<const std::int8_t> descriptor, std::span<const SketchedValue> chosen,
+void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_t> out) noexcept {
+  std::ranges::copy(descriptor, out.begin());
+  std::ranges::transform(descriptor, out.subspan(descriptor.size()).begin(),
+                         [](std::int8_t value) { return static_cast<std::int8_t>(-value); });
+}
+
+void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept {
   const SketchedValue* value = chosen.data();
   for (std::uint64_t& word : out) {
-    word = 0;
+    std::uint64_t bits = 0;
     for (std::size_t bit = 0; bit < bits_per_word; ++bit) {
       std::int32_t sum = 0;
-      for (std::size_t i = 0; i < values_per_bit; ++i, ++value) {
-        const std::int32_t sign = 1 - 2 * static_cast<std::int32_t>(value->subtracted);
-        sum += sign * descriptor[value->place];
-      }
-      word |= static_cast<std::uint64_t>(sum > 0) << bit;
+      for (std::size_t i = 0; i < values_per_bit; ++i) sum += both[*value++];
+      bits |= static_cast<std::uint64_t>(sum > 0) << bit;
     }
+    word = bits;
   }
 }
 

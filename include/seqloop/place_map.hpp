@@ -110,7 +110,9 @@ class PlaceMap {
   }
 
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
-  [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept {
+    return order_.apart(a, b) <= beside || (!first_visits_.empty() && same_first_visit(a, b));
+  }
 
   [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }  // N
   [[nodiscard]] std::size_t capacity() const noexcept { return order_.capacity(); }
@@ -133,6 +135,9 @@ class PlaceMap {
   PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
            ArenaMemory&& memory);
 
+  static constexpr std::uint64_t beside = 10;  // rows so near each other are one place
+
+  [[nodiscard]] bool same_first_visit(std::size_t a, std::size_t b) const noexcept;
   [[nodiscard]] bool fits(std::span<const float> descriptor) const noexcept;
   [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
   [[nodiscard]] std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;

@@ -23,6 +23,14 @@ struct Differences {
     return {_mm512_add_epi64(sum.lanes, _mm512_popcnt_epi64(differ))};
   }
 
+  static std::uint32_t total(Sum sum) noexcept {
+    const __m256i half = _mm256_add_epi64(_mm512_maskz_extracti64x4_epi64(all_lanes, sum.lanes, 0),
+                                          _mm512_maskz_extracti64x4_epi64(all_lanes, sum.lanes, 1));
+    const __m128i pair =
+        _mm_add_epi64(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+    return static_cast<std::uint32_t>(_mm_cvtsi128_si32(pair) + _mm_extract_epi32(pair, 2));
+  }
+
   static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
     store_quarters(
         added_pairs(packed(sums[0].lanes, sums[1].lanes), packed(sums[2].lanes, sums[3].lanes)),

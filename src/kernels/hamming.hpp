@@ -5,14 +5,15 @@
 
 // Differences: struct {
 //   Sum: a register; Sum zero(); Sum add<words>(Sum, a, b): bits that differ in `words` words, a
-//   block or half of one; totals(sums of sums_together, out) }
+//   block or half of one; totals(sums of sums_together, out); total(a sum) }
 namespace seqloop::kernels {
 
 /// The distances of one sketch to some that lie side by side.
 /// @param bits [rows] written
 template <class Differences, std::size_t rows>
-void distances_abreast(const std::uint64_t* query, const std::uint64_t* row, std::size_t words,
-                       std::uint32_t* bits) noexcept {
+[[gnu::always_inline]] inline void distances_abreast(const std::uint64_t* query,
+                                                     const std::uint64_t* row, std::size_t words,
+                                                     std::uint32_t* bits) noexcept {
   typename Differences::Sum sums[sums_together];
   for (auto& sum : sums) sum = Differences::zero();
   std::size_t first = 0;
@@ -37,15 +38,27 @@ void distances_abreast(const std::uint64_t* query, const std::uint64_t* row, std
           Differences::template add<words_per_half>(sums[r], last_row.values, last_query.values);
     }
   }
-  std::uint32_t totals[sums_together];
-  Differences::totals(sums, totals);
-  for (std::size_t r = 0; r < rows; ++r) bits[r] = totals[r];
+  if constexpr (rows == 1) {
+    *bits = Differences::total(sums[0]);
+  } else {
+    std::uint32_t totals[sums_together];
+    Differences::totals(sums, totals);
+    for (std::size_t r = 0; r < rows; ++r) bits[r] = totals[r];
+  }
 }
+
+// What most pairs of sketches are compared by, one pair at a time.
+constexpr std::size_t words_looked_at = 2 * words_per_block;
 
 template <class Differences>
 std::uint32_t hamming(const std::uint64_t* a, const std::uint64_t* b, std::size_t words) noexcept {
   std::uint32_t bits;
-  distances_abreast<Differences, 1>(a, b, words, &bits);
+  // Known here, as in a column.
+  if (words == words_looked_at) {
+    distances_abreast<Differences, 1>(a, b, words_looked_at, &bits);
+  } else {
+    distances_abreast<Differences, 1>(a, b, words, &bits);
+  }
   return bits;
 }
 

@@ -102,6 +102,10 @@ struct HighwayDifferences {
     }
   }
 
+  static std::uint32_t total(Sum sum) noexcept {
+    return static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(Words(), sum)));
+  }
+
   static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
     // Counts fit 32 bits: two go into 64.
     const auto packed = [](Sum a, Sum b) { return hn::Or(a, hn::ShiftLeft<32>(b)); };

@@ -41,6 +41,7 @@ struct Differences {
     }
     return sum;
   }
+  static std::uint32_t total(Sum sum) noexcept { return sum; }
   static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
     for (std::size_t i = 0; i < sums_together; ++i) out[i] = sums[i];
   }

@@ -225,7 +225,9 @@ Forms::Forms(std::vector<float> descriptor)
   inverse_length = seqloop::inverse_length(quantise(values, bytes).squared_norm);
   std::vector<SketchedValue> chosen(sketched_values(sketch.size()));
   choose_sketched_values(bytes.size(), chosen);
-  seqloop::sketch(bytes, chosen, sketch);
+  std::vector<std::int8_t> both(2 * bytes.size());
+  with_negative(bytes, both);
+  seqloop::sketch(both, chosen, sketch);
 }
 
 double difference(const MatcherConfig& config, const Forms& a, const Forms& b) {

@@ -89,7 +89,10 @@ class DescriptorRows {
 
   /// Differing bits of the close words of two sketches. @return 0 .. 64 close_words
   [[nodiscard]] std::uint32_t look_closely(const DescriptorRows& queries, std::size_t query,
-                                           std::size_t row) const noexcept;
+                                           std::size_t row) const noexcept {
+    return kernels_->hamming(&queries.sketches_[query * words_], &sketches_[row * words_],
+                             close_words);
+  }
 
   /// Has the processor fetch the sketches of consecutive rows, which will be looked at soon.
   void prefetch_sketches(std::size_t first, std::size_t count) const noexcept;
@@ -120,6 +123,7 @@ class DescriptorRows {
   std::span<std::int8_t> small_;       // [rows, stride], int8
   std::span<double> inverse_lengths_;  // [rows], int8
   std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
+  std::span<std::int8_t> both_;        // [2 D], a descriptor and its negative
   std::span<SketchedValue> sketched_values_;
   std::span<std::uint64_t> sketches_;  // [rows, words_]
   std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side

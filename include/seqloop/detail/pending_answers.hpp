@@ -94,8 +94,9 @@ class PendingAnswers {
     Lead lead;              // that `margin` took the logarithm of last
   };
 
+  /// A power of two, so that nothing is divided: a step asks for this many hundred times.
   [[nodiscard]] std::size_t slot_of(std::uint64_t frame) const noexcept {
-    return static_cast<std::size_t>(frame % waiting_.size());
+    return static_cast<std::size_t>(frame) & (waiting_.size() - 1);
   }
   [[nodiscard]] Waiting& at(std::uint64_t frame) noexcept { return waiting_[slot_of(frame)]; }
   [[nodiscard]] std::span<FoundLine> lines_in(std::size_t slot) noexcept {
@@ -126,7 +127,7 @@ class PendingAnswers {
   std::uint64_t end_ = 0;    // after the newest
   std::size_t given_ = 0;
   std::optional<Evidence> evidence_;
-  std::span<Waiting> waiting_;           // [patience + ds + 2], a ring by frame
+  std::span<Waiting> waiting_;           // [depth + ds + 1 or more], a ring by frame
   std::span<FoundLine> lines_;           // [the same, lines_kept]
   std::span<Answer> answers_;            // [patience + frames at once + 1]
   std::span<BeliefTraces::Step> trace_;  // [PlaceBelief::depth]

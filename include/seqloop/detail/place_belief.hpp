@@ -101,6 +101,7 @@ class PlaceBelief {
     [[nodiscard]] double lead(double value) const noexcept;
   };
 
+  static void prefetch(const SceneView& view) noexcept;
   void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;

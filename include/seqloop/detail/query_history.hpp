@@ -24,14 +24,16 @@ class QueryHistory {
   /// Takes the next frame's descriptor, forgetting the oldest.
   /// @param descriptor [D] finite. Work: D. Allocates: never.
   void push(std::span<const float> descriptor) noexcept {
-    rows_.store(row_of(frames_++), descriptor);
+    begin_next();
+    rows_.store(newest_row_, descriptor);
   }
 
   /// Takes another frame with the newest one's descriptor, or with none, all zero, if it is the
   /// first. Work: D copies. Allocates: never.
   void push_again() noexcept {
-    const std::uint64_t frame = frames_++;
-    if (frame > 0) rows_.copy(row_of(frame), rows_, row_of(frame - 1));
+    const std::size_t before = newest_row_;
+    begin_next();
+    if (frames_ > 1) rows_.copy(newest_row_, rows_, before);
   }
 
   /// Frames pushed so far.
@@ -40,10 +42,12 @@ class QueryHistory {
   /// The newest frame; there must be one.
   [[nodiscard]] std::uint64_t newest() const noexcept { return frames_ - 1; }
 
-  /// The descriptors that are kept; a frame's row is `row_of(frame)`.
+  /// The descriptors that are kept; the row of a frame that is among them is `row_of(frame)`.
   [[nodiscard]] const DescriptorRows& rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t row_of(std::uint64_t frame) const noexcept {
-    return static_cast<std::size_t>(frame % kept_);
+    // The ring is gone round by hand: a step asks for this a thousand times, and division is slow.
+    const auto back = static_cast<std::size_t>(newest() - frame);
+    return newest_row_ >= back ? newest_row_ - back : newest_row_ + kept_ - back;
   }
 
   /// The difference of two frames that are kept. Work: D MACs.
@@ -52,8 +56,14 @@ class QueryHistory {
   }
 
  private:
+  void begin_next() noexcept {
+    const bool goes_on = frames_++ > 0 && newest_row_ + 1 < kept_;
+    newest_row_ = goes_on ? newest_row_ + 1 : 0;
+  }
+
   std::size_t kept_;
   std::uint64_t frames_ = 0;
+  std::size_t newest_row_ = 0;
   DescriptorRows rows_;  // [kept]
 };
 

@@ -14,11 +14,9 @@ inline constexpr std::size_t sketch_words = 32;
 /// within the noise; this is cheap and among the best.
 inline constexpr std::size_t values_per_bit = 4;
 
-/// One of the values that a bit adds up.
-struct SketchedValue {
-  std::uint32_t place : 31;
-  std::uint32_t subtracted : 1;
-};
+/// One of the values that a bit adds up: its place in a descriptor that is followed by its
+/// negative.
+using SketchedValue = std::uint32_t;
 
 /// Values that a sketch of this many words adds up.
 [[nodiscard]] constexpr std::size_t sketched_values(std::size_t words) noexcept {
@@ -30,17 +28,21 @@ struct SketchedValue {
 /// @param out [sketched_values(words)] written; those of a longer sketch begin with the shorter's
 void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue> out) noexcept;
 
+/// Writes a descriptor and its negative behind it, so that nothing but adding is left to do.
+/// @param descriptor [D] -127 .. 127   @param out [2 D] written
+void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_t> out) noexcept;
+
 /// Keeps of a descriptor on which side of some planes it lies: bit b is whether the sum of
 /// `values_per_bit` of its values, chosen by chance, half of them by chance subtracted, is above 0.
 /// The chance is fixed and the arithmetic whole: the same on every processor. The more two
 /// descriptors are alike, the fewer bits differ, about words * 64 * angle / pi; so descriptors
 /// should be standardised, or all would lie on the same sides.
-/// @param descriptor [D]
-/// @param chosen     [sketched_values(words)] for this D
-/// @param out        [words] written
+/// @param both   [2 D] the descriptor `with_negative`
+/// @param chosen [sketched_values(words)] for this D
+/// @param out    [words] written
 /// Work: words * 64 * values_per_bit adds, whatever D is. Allocates: never.
 /// Source: src/README.md, section 5.3.
-void sketch(std::span<const std::int8_t> descriptor, std::span<const SketchedValue> chosen,
+void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept;
 
 /// How far apart two unit vectors are, of which so large a share of the bits differs: the angle

@@ -43,18 +43,20 @@ struct Places {
     SyntheticPlaces street(size.descriptor_size);
     std::vector<SketchedValue> chosen(sketched_values(sketch_words));
     choose_sketched_values(size.descriptor_size, chosen);
+    std::vector<std::int8_t> both(2 * size.descriptor_size);
     for (std::size_t row = 0; row < size.places; ++row) {
       const std::span<float> place = rows.subspan(row * query.size(), size.descriptor_size);
       street.see(static_cast<double>(row), 0.0F, place);
       const std::span<std::int8_t> small = small_rows.subspan(row * stride, stride);
       inverse_rows[row] = inverse_length(quantise(place, small).squared_norm);
-      sketch(small.first(size.descriptor_size), chosen,
-             sketches.subspan(row * sketch_words, sketch_words));
+      with_negative(small.first(size.descriptor_size), both);
+      sketch(both, chosen, sketches.subspan(row * sketch_words, sketch_words));
     }
     const std::span<float> unit = std::span(query).first(size.descriptor_size);
     street.see(static_cast<double>(size.places) / 2.0, 1.0F, unit);
     inverse_query = inverse_length(quantise(unit, small_query).squared_norm);
-    sketch(std::span(small_query).first(size.descriptor_size), chosen, query_sketch);
+    with_negative(std::span(small_query).first(size.descriptor_size), both);
+    sketch(both, chosen, query_sketch);
   }
 
   Capacity size;
