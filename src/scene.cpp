@@ -61,9 +61,10 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
   for (const std::uint32_t b : bits) ++histogram_[b];
   std::uint64_t sum = 0;
   std::uint64_t squares = 0;
-  for (std::uint64_t b = 0; b < histogram_.size(); ++b) {
-    sum += b * histogram_[b];
-    squares += b * b * histogram_[b];
+  for (std::size_t b = 0; b < histogram_.size(); ++b) {
+    const std::uint64_t pairs = histogram_[b];
+    sum += b * pairs;
+    squares += b * b * pairs;
   }
   const auto n = static_cast<double>(bits.size());
   const double mean = static_cast<double>(sum) / n / scanned_bits;
