@@ -22,6 +22,7 @@ std::size_t lowest_lines(const SequenceSearch& search, const PlaceOrder& order,
     for (std::size_t row = run.first; row < run.last; ++row) {
       const double score = scores[row];
       if (score == std::numeric_limits<double>::infinity()) continue;
+      if (count == lines.size() && score >= lines.back().score) continue;
       const CandidateRun session = order.around(row);
       const std::size_t first = std::max({run.first, session.first, row - std::min(row, near)});
       const std::size_t last = std::min({run.last, session.last, row + near + 1});

@@ -1,9 +1,52 @@
 // SPDX-License-Identifier: MIT
+#include <arm_neon.h>
+
 #include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
+namespace {
+
+/// Products of bytes fit 16 bits, and so do sums of two of them as long as no value is -128: only
+/// these are widened.
+struct Products {
+  using Sum = int32x4_t;
+  using Row = int8x16_t;
+  using Query = int8x16_t;
+  static constexpr std::size_t step = 16;
+  static constexpr std::uint32_t row_offset = 0;
+  static constexpr std::size_t block_queries = 4;
+  static constexpr std::size_t block_rows = 2;
+  static constexpr std::size_t column_rows = 4;
+
+  static Sum zero() noexcept { return vdupq_n_s32(0); }
+  static Row row(const std::int8_t* from) noexcept { return vld1q_s8(from); }
+  static Query query(const std::int8_t* from) noexcept { return vld1q_s8(from); }
+
+  static Sum add(Sum sum, Row row, Query query) noexcept {
+    const int16x8_t first = vmull_s8(vget_low_s8(row), vget_low_s8(query));
+#ifdef __aarch64__  // takes the upper halves where they are
+    return vpadalq_s16(sum, vmlal_high_s8(first, row, query));
+#else
+    return vpadalq_s16(sum, vmlal_s8(first, vget_high_s8(row), vget_high_s8(query)));
+#endif
+  }
+
+  static void totals(const Sum (&sums)[sums_together], std::uint32_t* out) noexcept {
+    // As 32-bit ARM can, too: pairs of half a register.
+    const int32x4_t four = vcombine_s32(vpadd_s32(halves(sums[0]), halves(sums[1])),
+                                        vpadd_s32(halves(sums[2]), halves(sums[3])));
+    vst1q_u32(out, vreinterpretq_u32_s32(four));
+  }
+
+ private:
+  static int32x2_t halves(Sum sum) noexcept {
+    return vadd_s32(vget_low_s32(sum), vget_high_s32(sum));
+  }
+};
+
+}  // namespace
 
 std::uint32_t hamming_neon(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept {
@@ -27,6 +70,6 @@ void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
 }
 
 constinit const IntegerKernels neon =
-    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("neon", &has_neon);
+    composed_of<Products, HighwayDifferences, HighwayLanes>("neon", &has_neon);
 
 }  // namespace seqloop::kernels
