@@ -75,6 +75,7 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
                                std::size_t rows)
     : form_(form),
       kernels_(&best_integer_kernels()),
+      float_column_(&best_float_column()),
       stride_(stride_of(form)),
       words_(words_of(form)),
       exact_(arena.take<float>(names.values, form.arithmetic == Arithmetic::float32
@@ -210,9 +211,19 @@ void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
                              std::span<float> out) const noexcept {
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = difference(form_.difference, queries.exact(query), exact(first + i), form_.size);
+  if (form_.difference != Difference::euclidean) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = difference(form_.difference, queries.exact(query), exact(first + i), form_.size);
+    }
+    return;
   }
+  std::array<double, abreast> squares;
+  in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
+    float_column_->squares(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
+                           squares.data());
+    std::ranges::transform(std::span(squares).first(count), out.subspan(begin).begin(),
+                           [](double square) { return static_cast<float>(std::sqrt(square)); });
+  });
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,

@@ -14,10 +14,9 @@ namespace {
 template <class Term>
 double sum_of(std::span<const float> a, std::span<const float> b, Term term) noexcept {
   // Partial sums move to double before float has lost digits on long descriptors.
-  constexpr std::size_t block = 64 * lanes;
   double sum = 0.0;
-  for (std::size_t first = 0; first < a.size(); first += block) {
-    const std::size_t last = std::min(first + block, a.size());
+  for (std::size_t first = 0; first < a.size(); first += float_block) {
+    const std::size_t last = std::min(first + float_block, a.size());
     std::array<float, lanes> partial{};
     for (std::size_t i = first; i < last; i += lanes) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -31,9 +30,12 @@ double sum_of(std::span<const float> a, std::span<const float> b, Term term) noe
 
 }  // namespace
 
+double squared_distance(std::span<const float> a, std::span<const float> b) noexcept {
+  return sum_of(a, b, [](float value) { return value * value; });
+}
+
 float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
-  const auto square = [](float value) { return value * value; };
-  return static_cast<float>(std::sqrt(sum_of(a, b, square)));
+  return static_cast<float>(std::sqrt(squared_distance(a, b)));
 }
 
 float mean_absolute(std::span<const float> a, std::span<const float> b, std::size_t size) noexcept {

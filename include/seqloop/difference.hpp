@@ -17,6 +17,12 @@ inline constexpr std::size_t lanes = 16;
   return (descriptor_size + lanes - 1) / lanes * lanes;
 }
 
+/// Values whose partial sums, a lane each, are floats; then they move to double.
+inline constexpr std::size_t float_block = 64 * lanes;
+
+/// The square of the Euclidean distance, as below.
+[[nodiscard]] double squared_distance(std::span<const float> a, std::span<const float> b) noexcept;
+
 /// Euclidean distance. Summed in a fixed order, so that the result does not depend on the width of
 /// the machine's registers, and as squared differences, so that it is exact where vectors are equal
 /// (2 - 2ab is not).

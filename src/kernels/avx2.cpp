@@ -2,6 +2,7 @@
 #include <immintrin.h>
 
 #include "kernels/composed_of.hpp"
+#include "kernels/float_squares.hpp"
 #include "kernels/four_sums.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/variants.hpp"
@@ -85,5 +86,7 @@ void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
 
 constinit const IntegerKernels avx2 =
     composed_of<Products, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
+
+constinit const FloatColumn float_avx2{"avx2", &has_avx2, &squares};
 
 }  // namespace seqloop::kernels

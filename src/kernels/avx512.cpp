@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
+#include "kernels/float_squares.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/variants.hpp"
 
@@ -29,5 +30,7 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
 
 constinit const IntegerKernels avx512 =
     composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512);
+
+constinit const FloatColumn float_avx512{"avx512", &has_avx512, &squares};
 
 }  // namespace seqloop::kernels

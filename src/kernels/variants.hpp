@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "seqloop/detail/float_columns.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 
 // Everything that some processor's build may have. Which of it is compiled, CMakeLists.txt says;
@@ -19,6 +20,10 @@ extern const IntegerKernels sse4;
 extern const IntegerKernels neon_dot;
 extern const IntegerKernels neon;
 extern const IntegerKernels scalar;
+
+extern const FloatColumn float_avx512;
+extern const FloatColumn float_avx2;
+extern const FloatColumn float_plain;
 
 // What a variant shares with one that has fewer instructions. Not compiled again: the linker could
 // take the copy with more of them for both.

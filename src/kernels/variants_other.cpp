@@ -10,4 +10,9 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
   return variants;
 }
 
+std::span<const FloatColumn* const> float_columns() noexcept {
+  static constexpr std::array variants{&kernels::float_plain};
+  return variants;
+}
+
 }  // namespace seqloop

@@ -49,4 +49,10 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
   return variants;
 }
 
+std::span<const FloatColumn* const> float_columns() noexcept {
+  static constexpr std::array variants{&kernels::float_avx512, &kernels::float_avx2,
+                                       &kernels::float_plain};
+  return variants;
+}
+
 }  // namespace seqloop

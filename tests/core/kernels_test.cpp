@@ -9,6 +9,7 @@
 
 #include "core/matcher.hpp"
 #include "seqloop/detail/contrast.hpp"
+#include "seqloop/detail/float_columns.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -29,6 +30,29 @@ TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
     }
     EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
     EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
+  }
+}
+
+TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
+  std::mt19937 random(14);
+  std::normal_distribution<float> normal;
+  for (const FloatColumn* column : float_columns()) {
+    if (!column->supported()) continue;
+    for (const std::size_t size : {0U, 16U, 48U, 736U, 1024U, 1040U, 9216U}) {
+      for (const std::size_t count : {0U, 1U, 3U, 4U, 9U}) {
+        std::vector<float> query(size);
+        std::vector<float> rows(count * size);
+        for (float& value : query) value = normal(random);
+        for (float& value : rows) value = normal(random);
+        std::vector<double> sums(count + 1, -1.0);
+        column->squares(query.data(), rows.data(), size, count, sums.data());
+        for (std::size_t row = 0; row < count; ++row) {
+          EXPECT_EQ(sums[row], squared_distance(query, std::span(rows).subspan(row * size, size)))
+              << column->name << ' ' << size << ' ' << row;
+        }
+        EXPECT_EQ(sums[count], -1.0) << "nothing behind the last";
+      }
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "program/process/available_memory.hpp"
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/fixed_distance.hpp"
+#include "seqloop/detail/float_columns.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detail/quantised.hpp"
 #include "seqloop/detail/sketch.hpp"
@@ -32,6 +34,7 @@ struct Places {
         dots(size.places),
         distances(size.places),
         bits(size.places),
+        squares(size.places),
         floats(size.places),
         memory(size.places * (query.size() * sizeof(float) + stride + sketch_words * 8) +
                    3 * Arena::alignment,
@@ -69,6 +72,7 @@ struct Places {
   std::vector<std::int32_t> dots;
   std::vector<std::uint16_t> distances;
   std::vector<std::uint32_t> bits;
+  std::vector<double> squares;
   std::vector<float> floats;
   ArenaMemory memory;
   std::span<float> rows;
@@ -103,10 +107,10 @@ std::vector<Contender> our_columns(Places& places) {
         });
   }
   add("seqloop-float", places.rows.size_bytes(), [&places] {
-    const std::size_t stride = places.query.size();
-    for (std::size_t row = 0; row < places.size.places; ++row) {
-      places.floats[row] = euclidean(places.query, places.rows.subspan(row * stride, stride));
-    }
+    best_float_column().squares(places.query.data(), places.rows.data(), places.query.size(),
+                                places.size.places, places.squares.data());
+    std::ranges::transform(places.squares, places.floats.begin(),
+                           [](double square) { return static_cast<float>(std::sqrt(square)); });
   });
   return contenders;
 }

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace seqloop {
+
+/// How one kind of processor compares a descriptor of floats with many. What is added to what, and
+/// in which order, is that of `euclidean` in all variants: their sums are the same to the last bit.
+struct FloatColumn {
+  std::string_view name;  ///< such as "avx2"
+
+  /// Whether the processor that runs this has the instructions. Work: a few instructions.
+  bool (*supported)() noexcept;
+
+  /// Sums of squared differences of one vector and consecutive rows.
+  /// @param query  [stride]   @param rows [count, stride]   @param stride a whole number of lanes
+  /// @param sums   [count] written
+  /// Work: count * stride subtractions and MACs; reads the rows once, front to back.
+  void (*squares)(const float* query, const float* rows, std::size_t stride, std::size_t count,
+                  double* sums) noexcept;
+};
+
+/// All variants that this library was built with, the best first, the one in plain C++ last. Not
+/// all need be supported here.
+[[nodiscard]] std::span<const FloatColumn* const> float_columns() noexcept;
+
+/// The first supported one. Ask once and keep the answer.
+[[nodiscard]] const FloatColumn& best_float_column() noexcept;
+
+}  // namespace seqloop
