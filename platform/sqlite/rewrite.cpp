@@ -42,17 +42,6 @@ std::int64_t drop(State& map, const std::string& from, const Values&... values) 
   return sqlite3_changes(map.database.handle());
 }
 
-/// The places of a session, and what is kept of each.
-template <class State>
-void drop_places(State& map, std::int64_t session) {
-  const Numbers numbers = numbers_of(map.database, session, map.counts.next_place);
-  (void)drop(map, "removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
-  map.counts.thumbnails -=
-      drop(map, "thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
-  (void)drop(map, "block WHERE session = ?", session);
-  (void)drop(map, "statistics WHERE session = ?", session);
-}
-
 /// @return null where it has none
 const Successor* successor_of(std::span<const Successor> successors, std::uint64_t place) {
   const auto found = std::ranges::lower_bound(successors, place, {}, &Successor::place);
@@ -97,37 +86,69 @@ void MapFile::forget(const std::string& session) {
   State& map = *state_;
   const SessionFacts facts = named(*this, session);
   map.saving([&] {
-    drop_places(map, facts.id);
+    const Numbers numbers = numbers_of(map.database, facts.id, map.counts.next_place);
+    (void)drop(map, "removed WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
+    map.counts.thumbnails -=
+        drop(map, "thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
     // Links of other sessions to its places stay: they say which of theirs are visits of one place.
     map.counts.links -= drop(map, "link WHERE session = ?", facts.id);
+    (void)drop(map, "block WHERE session = ?", facts.id);
+    (void)drop(map, "statistics WHERE session = ?", facts.id);
     (void)drop(map, "session WHERE id = ?", facts.id);
   });
 }
 
-std::size_t MapFile::retire(const std::string& session, std::span<const Successor> successors,
-                            std::uint64_t every) {
+std::size_t MapFile::retire(const std::string& session, std::uint64_t first, std::uint64_t last,
+                            std::span<const Successor> successors, std::uint64_t every) {
   State& map = *state_;
   SessionFacts facts = named(*this, session);
   std::vector<SavedLink> visits;
   map.saving([&] {
+    // Of blocks at the ends, a part stays.
+    std::vector<std::int64_t> blocks;
+    Statement rows(map.database, "SELECT first FROM block WHERE session = ? ORDER BY first");
+    rows.with(facts.id);
+    while (rows.step()) blocks.push_back(rows.integer(0));
     const Numbers numbers = numbers_of(map.database, facts.id, map.counts.next_place);
-    map.read(
-        numbers.first, numbers.last,
-        [&](const PlaceBlock& block) {
-          for (const PlaceRecord& record : block.records) {
-            const Successor* next = successor_of(successors, record.number);
-            if (next == nullptr) continue;
-            if (!visits.empty() && record.frame - visits.back().frame < every) continue;
-            visits.push_back({facts.id, record.frame, std::nullopt, next->by, next->probability});
-          }
-        },
-        {});
-    drop_places(map, facts.id);
-    map.counts.links -= drop(map, "link WHERE session = ? AND place IS NOT NULL", facts.id);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::int64_t end = i + 1 < blocks.size() ? blocks[i + 1] - 1 : numbers.last;
+      if (end < signed_of(first) || blocks[i] > signed_of(last)) continue;
+      std::vector<PlaceRecord> left;
+      std::vector<std::byte> bytes;
+      map.read(
+          blocks[i], blocks[i],
+          [&](const PlaceBlock& block) {
+            const std::size_t size = block.places.size() / block.records.size();
+            for (std::size_t at = 0; at < block.records.size(); ++at) {
+              const PlaceRecord& record = block.records[at];
+              if (record.number < first || record.number > last) {
+                left.push_back(record);
+                const auto place = block.places.subspan(at * size, size);
+                bytes.insert(bytes.end(), place.begin(), place.end());
+                continue;
+              }
+              --facts.places;
+              const Successor* next = successor_of(successors, record.number);
+              if (next == nullptr) continue;
+              if (!visits.empty() && record.frame - visits.back().frame < every) continue;
+              visits.push_back({facts.id, record.frame, std::nullopt, next->by, next->probability});
+            }
+          },
+          {});
+      (void)drop(map, "block WHERE first = ?", blocks[i]);
+      (void)drop(map, "removed WHERE place BETWEEN ? AND ?", blocks[i], end);
+      if (!left.empty()) map.insert_block(facts.id, left, bytes);
+    }
+    map.counts.thumbnails -=
+        drop(map, "thumbnail WHERE place BETWEEN ? AND ?", signed_of(first), signed_of(last));
+    map.counts.links -= drop(map, "link WHERE session = ? AND place BETWEEN ? AND ?", facts.id,
+                             signed_of(first), signed_of(last));
     lead_on(map, successors);
     map.insert_links(facts.id, visits);
-    facts.places = 0;
-    facts.statistics = false;
+    if (facts.places == 0) {
+      (void)drop(map, "statistics WHERE session = ?", facts.id);
+      facts.statistics = false;
+    }
     map.save_session(facts);
   });
   return visits.size();

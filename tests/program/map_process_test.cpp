@@ -34,11 +34,16 @@ class Process {
  public:
   /// @param prepare runs in the child, before the program
   Process(const std::vector<std::string>& arguments, const std::string& out, const std::string& err,
-          const std::function<void()>& prepare = {})
-      : pid_(::fork()) {
-    if (pid_ != 0) return;
-    const int to_out = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    const int to_err = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+          const std::function<void()>& prepare = {}) {
+    // Before there is a process: whoever reads them never finds what the one before has said.
+    const int to_out = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    const int to_err = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    pid_ = ::fork();
+    if (pid_ != 0) {
+      ::close(to_out);
+      ::close(to_err);
+      return;
+    }
     ::dup2(to_out, STDOUT_FILENO);
     ::dup2(to_err, STDERR_FILENO);
     if (prepare) prepare();
@@ -73,7 +78,7 @@ class Process {
   }
 
  private:
-  pid_t pid_;
+  pid_t pid_ = 0;
 };
 
 class MapProcess : public test::Program {

@@ -80,7 +80,7 @@ class RecordedRun {
     for (std::uint64_t place = 0; place < end; place += 2) {
       successors.push_back({place, end - 1, .75});
     }
-    EXPECT_GT(map.retire(name, successors, 3), 0U);
+    EXPECT_GT(map.retire(name, 7, end, successors, 3), 0U);
     acknowledged(map);
   }
 

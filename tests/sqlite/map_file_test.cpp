@@ -232,7 +232,7 @@ TEST_F(Map, OfASessionThatRetiresVisitsAreKept) {
       if (block.session == 2) frames[record.number] = record.frame;
     }
   });
-  EXPECT_EQ(map.retire("tuesday", successors, 3), 3U) << "40 stands for 41 and 42";
+  EXPECT_EQ(map.retire("tuesday", 40, 79, successors, 3), 3U) << "40 stands for 41 and 42";
   EXPECT_EQ(numbers(map).size(), 50U);
   EXPECT_FALSE(numbers(map).contains(40));
   EXPECT_FALSE(map.thumbnail(40));
@@ -277,6 +277,30 @@ TEST_F(Map, OfASessionThatRetiresVisitsAreKept) {
   map.forget("tuesday");
   look();
   EXPECT_EQ(visits, (std::vector<sqlite::SavedLink>{expected[0]}));
+  (void)content(map);
+}
+
+TEST_F(Map, OfASessionAStretchMayRetire) {
+  make();
+  MapFile map = open();
+  std::set<std::uint64_t> left = numbers(map);
+  const std::vector<sqlite::Successor> successors{{5, 70, .9}, {7, 70, .9}, {20, 71, .8}};
+  EXPECT_EQ(map.retire("monday", 7, 26, successors, 1), 2U);
+  for (std::uint64_t place = 7; place <= 26; ++place) left.erase(place);
+  EXPECT_EQ(numbers(map), left);
+  EXPECT_EQ(map.sessions()[0].places, 20U);
+  EXPECT_TRUE(map.statistics(1));
+  map.read([](const sqlite::PlaceBlock& block) {
+    for (std::size_t i = 0; i < block.records.size(); ++i) {
+      EXPECT_TRUE(std::ranges::equal(block.places.subspan(i * 200, 200),
+                                     test::sample_place(block.records[i].number)));
+    }
+  });
+  (void)content(map);
+  EXPECT_EQ(map.retire("monday", 0, 39, {}, 1), 0U);
+  EXPECT_EQ(map.sessions()[0].places, 0U);
+  (void)content(map);
+  EXPECT_EQ(map.retire("monday", 0, 39, {}, 1), 0U) << "there is nothing left";
   (void)content(map);
 }
 

@@ -184,7 +184,7 @@ PYBIND11_MODULE(_core, module) {
           "was described alike can be compared.\n"
           "read_only: localise in it, and leave it as it is. session: name of this drive, when it\n"
           "began by default. save_every_s: seconds of driving that may be unsaved, 1. grow:\n"
-          "'novel', sessions of which later ones have seen enough go, or 'all' stay.\n"
+          "'novel', places that later laps have seen often enough go, or 'all' stay.\n"
           "settings: as seqloop.settings() lists them.\n"
           "Errors: SetupError: held by another process, of another form, damaged, no space, …")
       .def("where", &Map::where, py::arg("place"),

@@ -123,15 +123,18 @@ class SqliteMap : public LastingMap {
 
   [[nodiscard]] std::string summary() const override {
     if (!writer_) return fmt::format("the map has {} places; it was only read", map_->size());
-    std::string text = fmt::format(
-        "the map has {} places now; {} frames are saved, {} of them as places",
-        map_->size() - writer_->retired().places, writer_->saved(), writer_->saved_places());
-    for (const std::string& name : writer_->retired().sessions) {
-      text += fmt::format("; the places of '{}' went, since later ones show the same", name);
+    std::size_t places = map_->size();
+    std::string gone;
+    for (const Retired& retired : writer_->retired()) {
+      places -= retired.places;
+      gone += fmt::format(
+          "; of '{}' {} places went, since later ones show the same, and left {} visits",
+          retired.session, retired.places, retired.visits);
     }
-    if (const std::size_t visits = writer_->retired().visits; visits > 0) {
-      text += fmt::format("; {} visits are left of them", visits);
-    }
+    std::string text =
+        fmt::format("the map has {} places now; {} frames are saved, {} of them as places", places,
+                    writer_->saved(), writer_->saved_places()) +
+        gone;
     if (const auto missing = writer_->missing_thumbnails(); missing > 0) {
       text += fmt::format("; there was no room for {} thumbnails", missing);
     }

@@ -24,8 +24,8 @@ void add_map_options(OptionTable& options, MapSettings& settings) {
   options.text("session", settings.session, "name of the drive in the map [when it began]");
   options.section("Map", Shown::in_help_all);
   options.add({"grow", ValueKind::text,
-               "novel: of what was seen again in many later sessions, the oldest go; all: none "
-               "goes [novel]",
+               "novel: of what was seen again on six later laps, the oldest go and leave visits; "
+               "all: none goes [novel]",
                [&settings](std::string_view value) { settings.novel = parse_grow(value); }});
   options.number("save-every-s", settings.save_every_s,
                  "seconds of driving that may not be saved yet [1]");

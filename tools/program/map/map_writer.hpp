@@ -65,8 +65,8 @@ class MapWriter {
   /// Keeps a person's word on an answer, likewise.
   bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict);
 
-  /// Sessions that the drive has superseded, and whose places are gone.
-  [[nodiscard]] const Retired& retired() const noexcept { return retired_; }
+  /// What is gone since the drive has superseded it.
+  [[nodiscard]] const std::vector<Retired>& retired() const noexcept { return retired_; }
 
   /// Places that have no thumbnail for lack of room.
   [[nodiscard]] std::uint64_t missing_thumbnails() const noexcept {
@@ -149,7 +149,7 @@ class MapWriter {
   std::atomic<std::int64_t> saving_since_ns_{0};  // on the steady clock; 0: nothing is saved now
   bool failing_ = false;
   std::string why_;
-  Retired retired_;
+  std::vector<Retired> retired_;
   std::vector<std::byte> bytes_;
   std::vector<sqlite::PlaceRecord> records_;
   std::vector<sqlite::SavedLink> batch_links_;

@@ -11,18 +11,21 @@
 
 namespace seqloop::program {
 
-/// What went from a map, and what is left of it.
+/// Places that went from a map.
 struct Retired {
-  std::vector<std::string> sessions;  ///< names
+  std::string session;
   std::size_t places = 0;
-  std::size_t visits = 0;
+  std::size_t visits = 0;  ///< that are left of them
 };
 
-/// Lets places of sessions go from the file of which later ones have seen enough; their frames stay
-/// as visits. What cannot be written stays for now, and goes after the next drive.
+/// Lets places go from the file of which enough was seen since, session by session, and of long
+/// ones stretch by stretch; their frames stay as visits. What cannot be written stays for now, and
+/// goes after the next drive.
 /// @param map all that the file holds
 /// @param linked [capacity] by slot: the place that this one is a visit of; `none`: the map knows
-Retired retire_superseded(StoredMap& stored, const PlaceMap& map,
-                          std::span<const std::uint64_t> linked, std::uint64_t none);
+/// @return a row for each session that has lost any
+[[nodiscard]] std::vector<Retired> retire_superseded(StoredMap& stored, const PlaceMap& map,
+                                                     std::span<const std::uint64_t> linked,
+                                                     std::uint64_t none);
 
 }  // namespace seqloop::program

@@ -17,12 +17,13 @@ struct Sighting {
   double probability = 1.0;  ///< that these two are one
 };
 
-/// Sessions that a map can do without, because what they saw was seen again often enough since:
-/// .6 of their places in six later sessions or more, and no stretch of more than 60 was not.
-/// Sessions go whole: lines run through the places of one session, and find little in its pieces.
-/// @param sessions the oldest first, with their places in order
+/// Stretches that a map can do without, because what they saw was seen again often enough since: .6
+/// of their places in six later stretches or more, and no more than 60 in a row were not. They are
+/// sessions, or long parts of sessions: lines run through the places of one, and find little in
+/// short pieces.
+/// @param stretches the oldest first, with their places in order
 /// @return their indices, rising
-[[nodiscard]] std::vector<std::size_t> superseded(std::span<const std::vector<Sighting>> sessions);
+[[nodiscard]] std::vector<std::size_t> superseded(std::span<const std::vector<Sighting>> stretches);
 
 /// Which places stand for those of a session that goes: of those that stay the newest that was
 /// first seen where they were; where there is none, that of a neighbour, up to 16 places away.

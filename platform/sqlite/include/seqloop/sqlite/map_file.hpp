@@ -192,14 +192,15 @@ class MapFile {
   /// Throws SetupError: no such name; SaveError.
   void forget(const std::string& session);
 
-  /// Removes the places of a session with their thumbnails, links and statistics. The session
-  /// itself stays, and of its frames visits of the places that stand for theirs; visits that led to
-  /// its places lead to those, too. Links of other sessions to its places stay, as in `forget`.
-  /// @param successors of its places, rising; those that have none leave no visit
+  /// Removes places of a session that follow each other, with their thumbnails and links. The
+  /// session stays, and of its frames visits of the places that stand for theirs; visits that led
+  /// to its places lead to those, too. Links of other places to these stay, as in `forget`.
+  /// @param first, last numbers of the places that go, both included
+  /// @param successors of them, rising; those that have none leave no visit
   /// @param every frames that one visit is for, 1 or more: that of the first of them is kept
   /// @return visits that are kept. Throws SetupError: no such name, damaged; SaveError.
-  std::size_t retire(const std::string& session, std::span<const Successor> successors,
-                     std::uint64_t every);
+  std::size_t retire(const std::string& session, std::uint64_t first, std::uint64_t last,
+                     std::span<const Successor> successors, std::uint64_t every);
 
   /// Copies all sessions of another map behind this one's. A name that is taken gets a number.
   /// @return what is added to its places' numbers. Throws SetupError: another form, damaged;
