@@ -152,7 +152,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   }
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
     report.now = Belief{static_cast<std::size_t>(map_->order().number(likeliest->row)),
-                        static_cast<float>(logistic(log_odds(*pending_.evidence()))),
+                        static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
                         static_cast<float>(belief_.new_place())};
   }
 }

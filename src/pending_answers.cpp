@@ -19,8 +19,11 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t own = 6;
 
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
-/// the best of many are higher than those of one. Source: src/README.md, section 6.6.
-double trace_is_right(double best) { return logistic(1.5 * best - 1.0); }
+/// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
+/// section 6.6.
+double trace_is_right(double best) {
+  return logistic(std::min(1.5 * best - 1.0, 2.75 * best - 5.66));
+}
 
 }  // namespace
 

@@ -25,6 +25,7 @@ constexpr double leaving = 0.01;
 constexpr double coming = 0.001;
 
 constexpr double decay = 0.95;
+constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
 constexpr std::size_t born_most = 16;
 constexpr std::size_t old_most = PlaceBelief::most - born_most;
 
@@ -188,6 +189,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     at.gain = decay * at.gain + w * l;
     at.contrast = decay * at.contrast + (1.0 - decay) * contrast;
     at.age += w;
+    at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
   }
   sharpen(view.map->order(), scene, std::span(gains).first(count_));
   double sum = new_place_;
@@ -248,7 +250,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
   likeliest_ = Likeliest{top->row,
                          static_cast<std::size_t>(top - rows.begin()),
                          {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain),
-                          top->contrast, logarithm(1.0 + top->age)}};
+                          top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
 }
 
 /// What the best wrong row has gained.

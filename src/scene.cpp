@@ -17,11 +17,20 @@ constexpr std::size_t least_rows = 20;
 constexpr double scanned_bits = DescriptorRows::scanned_words * 64.0;
 constexpr double close_bits = DescriptorRows::close_words * 64.0;
 
-/// How much the newest frame tells that those before it did not.
+/// As `Scene` has them.
+struct News {
+  double change;
+  double novelty;
+};
+
+/// How much the newest frame tells that those before it did not: the first one all.
 /// @param mean share of bits in which rows differ from it
-double novelty_of(const SceneView& view, double mean, std::size_t& sketches) {
+News news_of(const SceneView& view, double mean, std::size_t& sketches) {
+  constexpr double power = 0.7;
+  constexpr double highest = 0.5;
+  const auto weight = [](double change) { return exponential(power * logarithm(change)); };
   const std::uint64_t frames = view.newest - view.oldest;
-  if (frames == 0) return 0.0;
+  if (frames == 0) return {weight(highest), weight(highest)};
   const DescriptorRows& queries = view.queries->rows();
   const auto squared = [&](std::size_t back) {
     ++sketches;
@@ -33,10 +42,8 @@ double novelty_of(const SceneView& view, double mean, std::size_t& sketches) {
   const double before = squared(1);
   const double cosine = std::max(0.0, 1.0 - before / 2.0);
   constexpr double noise = 0.03;
-  constexpr double power = 0.7;
-  constexpr double highest = 0.5;
   const double change = std::min(highest, std::max(0.0, 1.0 - cosine - noise) / (1.0 + cosine));
-  if (change <= 0.0) return 0.0;
+  if (change <= 0.0) return {0.0, 0.0};
   // A camera that shakes, or noise, changes much from frame to frame and goes nowhere.
   const double mu = chord(mean) * chord(mean);
   double gone = 1.0;
@@ -45,7 +52,7 @@ double novelty_of(const SceneView& view, double mean, std::size_t& sketches) {
         squared(static_cast<std::size_t>(std::min<std::uint64_t>(SceneGauge::reach, frames)));
     gone = std::clamp((earlier - before) / (0.5 * (mu - before)), 0.0, 1.0);
   }
-  return exponential(power * logarithm(change)) * gone;
+  return {weight(change), weight(change) * gone};
 }
 
 }  // namespace
@@ -88,8 +95,9 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
     power *= falls;
   }
   constexpr double above = 0.55;
+  const News news = news_of(view, mean, sketches);
   return Scene{mean, std::sqrt(spread + chance / close_bits), logarithm(exponentials / n) + above,
-               novelty_of(view, mean, sketches)};
+               news.change, news.novelty};
 }
 
 }  // namespace seqloop

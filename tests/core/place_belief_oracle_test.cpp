@@ -42,7 +42,7 @@ struct Seen {
 class NaiveBelief {
  public:
   struct Row {
-    double mass = 0.0, gain = 0.0, clear = 0.0, age = 0.0;
+    double mass = 0.0, gain = 0.0, clear = 0.0, age = 0.0, doubt = 0.0;
   };
 
   void observe(const SceneView& view) {
@@ -73,7 +73,8 @@ class NaiveBelief {
     }
     const double bias = std::log(mean) + 0.55;
     // 6.2
-    double w = 0.0;
+    double change = std::pow(0.5, 0.7);
+    double w = change;
     if (t > 0) {
       const auto d2 = [&](std::size_t k) { return std::pow(chord(of_frames(t - k, t)), 2); };
       const double c = std::max(0.0, 1.0 - d2(1) / 2.0);
@@ -83,7 +84,8 @@ class NaiveBelief {
         gone = std::clamp((d2(std::min<std::size_t>(20, t)) - d2(1)) / (0.5 * (far - d2(1))), 0.0,
                           1.0);
       }
-      w = std::pow(std::min(0.5, std::max(0.0, 1.0 - c - 0.03) / (1.0 + c)), 0.7) * gone;
+      change = std::pow(std::min(0.5, std::max(0.0, 1.0 - c - 0.03) / (1.0 + c)), 0.7);
+      w = change * gone;
     }
     // 6.3, move
     const std::vector<double> by =
@@ -120,7 +122,7 @@ class NaiveBelief {
       if (born <= 0.0) break;
       Row& at = moved[found.row];
       const double old = at.mass / (at.mass + born / n);
-      at = {at.mass + born / n, at.gain * old, at.clear * old, at.age * old};
+      at = {at.mass + born / n, at.gain * old, at.clear * old, at.age * old, at.doubt};
     }
     // Weigh.
     std::map<std::size_t, double> gains;
@@ -143,6 +145,7 @@ class NaiveBelief {
       at.gain = 0.95 * at.gain + w * l;
       at.clear = 0.95 * at.clear + 0.05 * contrast;
       at.age += w;
+      at.doubt = std::max(0.0, at.doubt + change * (1.25 - l));
     }
     // Sharpen.
     const auto sharp = [&](std::size_t row) {
@@ -197,8 +200,11 @@ class NaiveBelief {
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
     evidence = {std::log(big / (1.0 - big)),
-                (best->second.gain - mean_) / std::sqrt(variance_ + 0.25), best->second.clear,
-                std::log(1.0 + best->second.age), 0.0};
+                (best->second.gain - mean_) / std::sqrt(variance_ + 0.25),
+                best->second.clear,
+                std::log(1.0 + best->second.age),
+                0.0,
+                best->second.doubt};
   }
 
   std::map<std::size_t, Row> rows_;
@@ -227,6 +233,7 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ASSERT_NEAR(e.lead, naive.evidence.lead, 1e-6);
     ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
     ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);
+    ASSERT_NEAR(e.doubt, naive.evidence.doubt, 1e-6);
   }
   EXPECT_GT(judged, query.size() / 2);
 }

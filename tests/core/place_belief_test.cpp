@@ -149,6 +149,18 @@ TEST(PlaceBelief, ACarriedRobotLosesItsBeliefAndFindsItself) {
   std::printf("%zu accepted of %zu, %zu wrong\n", accepted(said), query.size(), wrong);
   EXPECT_LE(wrong, 1U) << "after one of 40 jumps the row before it lives on for a frame";
   EXPECT_GT(accepted(said), query.size() * 7 / 10);
+  std::size_t sure = 0;
+  std::size_t mistaken = 0;
+  for (const FrameReport& report : said.reports) {
+    if (!report.now || report.now->probability < 0.99F) continue;
+    ++sure;
+    const std::size_t there = truth[static_cast<std::size_t>(report.newest)];
+    const auto off = static_cast<int>(report.now->place) - static_cast<int>(there);
+    if (std::abs(off) > 10) ++mistaken;
+  }
+  std::printf("sure of %zu newest frames, mistaken in %zu\n", sure, mistaken);
+  EXPECT_GT(sure, query.size() / 10);
+  EXPECT_LE(mistaken, sure / 100) << "what is said of the newest frame ends with the jump";
 }
 
 TEST(PlaceBelief, ACoveredLensSaysNothing) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+
 namespace seqloop {
 
 /// What the newest frame's likeliest row is judged by: the inputs of its probability.
@@ -10,13 +12,19 @@ struct Evidence {
   double contrast = 0.0;  ///< how much better it looks than the rows and frames around it
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
+  double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
 };
 
-/// The log-odds that the robot is at the newest frame's likeliest row, by such evidence: a logistic
-/// regression. Source: src/README.md, section 6.4.
+/// The log-odds that the row is right, by all but the doubt: a logistic regression. Source:
+/// src/README.md, section 6.4.
 [[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
   return -4.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
          8.984 * e.margin;
+}
+
+/// The log-odds that the robot is there still, and was not carried away with the newest frames.
+[[nodiscard]] inline double log_odds_now(const Evidence& e) noexcept {
+  return std::min(log_odds(e), 6.0) - 6.0 * e.doubt;
 }
 
 }  // namespace seqloop

@@ -86,6 +86,7 @@ class PlaceBelief {
     double past = -10.0;    // best log-odds on the way, fading
     double contrast = 0.0;  // decaying mean
     double age = 0.0;       // novel frames
+    double doubt = 0.0;     // as `Evidence` has it
     std::uint32_t parent = BeliefTraces::none;
   };
   /// A running mean and variance.

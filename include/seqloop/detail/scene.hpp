@@ -29,7 +29,8 @@ struct Scene {
   double mean;
   double deviation;
   double bias;     ///< about what the best of the rows scanned reaches by chance
-  double novelty;  ///< of the frame, 0 .. 1
+  double change;   ///< from the frame before, 0 .. 1
+  double novelty;  ///< as much of it as leads away from what was seen, 0 .. change
 };
 
 /// Makes the scene of each frame. Source: src/README.md, sections 6.1 and 6.2.
