@@ -92,6 +92,15 @@ class Settings(unittest.TestCase):
         for name in seqloop.Describer.settings():
             self.assertIn("--" + name.replace("_", "-"), shown)
 
+    def test_a_name_is_no_array(self) -> None:
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.match("day.npy")  # type: ignore[arg-type]
+        for word in ("reference: 'day.npy' is a name, not an array", "numpy.load", "query: not given"):
+            self.assertIn(word, str(raised.exception))
+        self.assertEqual([fault[0] for fault in raised.exception.faults], ["reference", "query"])
+        with self.assertRaisesRegex(ValueError, "query: 'b.npy' is a name"):
+            seqloop.match(None, pathlib.Path("b.npy"))  # type: ignore[arg-type]
+
     def test_every_fault_is_told_at_once(self) -> None:
         reference, query = drives()
         with self.assertRaises(ValueError) as raised:

@@ -33,6 +33,7 @@ struct BenchSettings {
   std::vector<std::size_t> places{3476};
   std::size_t descriptor_size = 735;
   std::size_t ds = 100;
+  double relocalise_s = 1.0;
   std::size_t rounds = 200;
   std::size_t graph_places = 20'000;
   DriveSettings drive;
@@ -74,9 +75,9 @@ std::vector<Contender> timed(const BenchSettings& settings, const Peers& peers) 
       time_columns(size, settings.graph_places, peers.columns, settings.rounds, all);
     }
     if (asked("search")) time_search(places, settings.ds, settings.rounds, all);
-    if (asked("step")) time_steps(size, settings.ds, settings.rounds, all);
+    if (asked("step")) time_steps(size, settings.ds, settings.relocalise_s, settings.rounds, all);
     if (asked("open")) time_opening(size, settings.rounds, all);
-    if (asked("loop")) time_loop(places, settings.ds, settings.rounds, all);
+    if (asked("loop")) time_loop(places, settings.ds, settings.relocalise_s, settings.rounds, all);
     if (asked("matrix")) {
       if (places > most_matrix_places) {
         say("matrix: left out for {} places, more than {}", places, most_matrix_places);
@@ -92,6 +93,7 @@ void bench(const BenchSettings& settings, const Peers& peers, Faults faults) {
   if (!settings.only.empty() && std::ranges::find(whats, settings.only) == whats.end()) {
     faults.push_back({"only", "'" + settings.only + "' is not timed", all_whats()});
   }
+  if (!(settings.relocalise_s > 0.0)) faults.push_back({"relocalise-s", "it must be above 0"});
   if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
   if (settings.only != "describe" && settings.only != "memory") {
     MatcherConfig config;
@@ -151,6 +153,8 @@ Verb bench_verb(const Peers& peers) {
   verb.options.count("d", settings->descriptor_size,
                      "values in a descriptor, for step, column and matrix [735]");
   verb.options.count("ds", settings->ds, "sequence length [100]");
+  verb.options.number("relocalise-s", settings->relocalise_s,
+                      "seconds of driving in which relocalising looks at all places [1]");
   verb.options.count("rounds", settings->rounds,
                      "times that each is timed, or as often as 20 s allow [200]");
   if (peers.columns) {

@@ -79,13 +79,13 @@ void time_describing(const DriveSettings& drive, std::size_t rounds,
   time_in_turn(std::move(contenders), rounds, timed);
 }
 
-void time_loop(std::size_t places, std::size_t ds, std::size_t rounds,
+void time_loop(std::size_t places, std::size_t ds, double relocalise_s, std::size_t rounds,
                std::vector<Contender>& timed) {
   const std::vector<std::uint8_t> camera = synthetic_picture();
   std::vector<std::uint8_t> grabbed(camera.size());
   const auto describer = opencv::make_builtin_describer();
   std::vector<float> described(describer->size());
-  for (const TimedMethod& method : timed_methods(ds)) {
+  for (const TimedMethod& method : timed_methods(ds, relocalise_s, places)) {
     if (method.config.arithmetic != Arithmetic::int8) continue;
     const auto drive =
         std::make_shared<DrivenDetector>(method.config, Capacity{places, describer->size()});

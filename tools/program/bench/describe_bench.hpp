@@ -16,7 +16,7 @@ void time_describing(const DriveSettings& drive, std::size_t rounds, std::vector
 /// A whole turn of the loop: such a frame is grabbed from memory and described, then matched with
 /// synthetic places; what is matched is synthetic too, so that the robot is recognised.
 /// @param ds sequence length
-void time_loop(std::size_t places, std::size_t ds, std::size_t rounds,
+void time_loop(std::size_t places, std::size_t ds, double relocalise_s, std::size_t rounds,
                std::vector<Contender>& timed);
 
 }  // namespace seqloop::program

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "program/options/matcher_settings.hpp"
 #include "program/process/available_memory.hpp"
 #include "program/process/say.hpp"
 #include "synthetic/driven_detector.hpp"
@@ -37,10 +38,13 @@ void time_together(const std::vector<TimedMethod>& methods, const Capacity& size
 
 }  // namespace
 
-std::vector<TimedMethod> timed_methods(std::size_t ds) {
-  MatcherConfig relocalising;
-  relocalising.sequence_length = ds;
-  MatcherConfig exhaustive = relocalising;
+std::vector<TimedMethod> timed_methods(std::size_t ds, double relocalise_s, std::size_t places) {
+  MatcherConfig exhaustive;
+  exhaustive.sequence_length = ds;
+  MatcherConfig relocalising = exhaustive;
+  MatcherSettings settings;
+  settings.relocalise_s = relocalise_s;
+  suit_slice(relocalising, settings, places);
   exhaustive.candidates = Candidates::all;
   MatcherConfig exact = exhaustive;
   exact.arithmetic = Arithmetic::float32;
@@ -49,11 +53,11 @@ std::vector<TimedMethod> timed_methods(std::size_t ds) {
           {"seqloop-float-exhaustive", exact}};
 }
 
-void time_steps(const Capacity& size, std::size_t ds, std::size_t rounds,
+void time_steps(const Capacity& size, std::size_t ds, double relocalise_s, std::size_t rounds,
                 std::vector<Contender>& timed) {
   std::vector<TimedMethod> together;
   std::uint64_t bytes = 0;
-  for (TimedMethod& method : timed_methods(ds)) {
+  for (TimedMethod& method : timed_methods(ds, relocalise_s, size.places)) {
     const std::uint64_t more = DrivenDetector::bytes_needed(method.config, size);
     if (!fits_memory(more, fmt::format("step by {} among {} places", method.by, size.places))) {
       continue;

@@ -120,6 +120,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
   if (bags::is_bag(path)) {
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
+  if (!settings.topic.empty()) say("{}: it is no bag: --topic does not choose here", path.string());
   return opencv::open_source(path, {.frames_per_second = settings.fps,
                                     .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false)});
 }

@@ -21,6 +21,7 @@ constexpr int plot_size = 900;  // pixels
 constexpr int margin = 70;
 const cv::Scalar ink(40, 40, 40);
 const cv::Scalar match_colour(40, 40, 230);
+const cv::Scalar border_colour(200, 120, 40);  // of sessions
 
 void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
@@ -61,11 +62,21 @@ void draw_axis(cv::Mat& picture, bool horizontal, std::uint64_t last) {
   }
 }
 
-/// Frames of a drive by index, as small colour pictures.
-std::map<std::uint64_t, cv::Mat> fetch(FrameSource& source, std::vector<std::uint64_t> wanted) {
+/// By number, small and in colour.
+using Pictures = std::map<std::uint64_t, cv::Mat>;
+
+cv::Mat small(const cv::Mat& picture, cv::InterpolationFlags how) {
   constexpr int width = 320;
+  cv::Mat resized;
+  cv::resize(picture, resized, {width, std::max(1, picture.rows * width / picture.cols)}, 0, 0,
+             how);
+  return resized;
+}
+
+/// Frames of a drive by index.
+Pictures fetch(FrameSource& source, std::vector<std::uint64_t> wanted) {
   std::ranges::sort(wanted);
-  std::map<std::uint64_t, cv::Mat> found;
+  Pictures found;
   Frame frame;
   for (Grab grab = source.grab(frame); grab != Grab::end && !wanted.empty();
        grab = source.grab(frame)) {
@@ -77,10 +88,8 @@ std::map<std::uint64_t, cv::Mat> fetch(FrameSource& source, std::vector<std::uin
     // cv::Mat has no view of constant pixels; this one is only read.
     const cv::Mat view(image.height, image.width, gray ? CV_8UC1 : CV_8UC3,
                        const_cast<std::uint8_t*>(image.data), image.stride);
-    cv::Mat& small = found[frame.index];
-    cv::resize(view, small, {width, std::max(1, image.height * width / image.width)}, 0, 0,
-               cv::INTER_AREA);
-    if (gray) cv::cvtColor(small, small, cv::COLOR_GRAY2BGR);
+    cv::Mat& picture = found[frame.index] = small(view, cv::INTER_AREA);
+    if (gray) cv::cvtColor(picture, picture, cv::COLOR_GRAY2BGR);
   }
   return found;
 }
@@ -88,6 +97,52 @@ std::map<std::uint64_t, cv::Mat> fetch(FrameSource& source, std::vector<std::uin
 std::string how_sure(const Answer& answer) {
   return std::isnan(answer.probability) ? fmt::format("uniqueness {:.2f}", answer.match->uniqueness)
                                         : fmt::format("probability {:.3f}", answer.probability);
+}
+
+/// Frames and their places side by side, in `matches.png`. @return false when there are none
+bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>& chosen,
+                 const Pictures& seen, const Pictures& known,
+                 const std::function<std::string(std::uint64_t)>& name_of) {
+  // All pairs get the room of the tallest picture, so that a drive of mixed sizes fits the sheet.
+  int height = 0;
+  for (const auto& pictures : {seen, known}) {
+    for (const auto& [frame, picture] : pictures) height = std::max(height, picture.rows);
+  }
+  std::vector<cv::Mat> pairs;
+  for (const Answer& answer : chosen) {
+    const auto left = seen.find(answer.frame);
+    const auto right = known.find(answer.match->place);
+    if (left == seen.end() || right == known.end()) continue;
+    constexpr int caption = 24;
+    constexpr int gap = 6;
+    cv::Mat pair(height + caption + gap, left->second.cols + right->second.cols + 3 * gap, CV_8UC3,
+                 cv::Scalar::all(255));
+    left->second.copyTo(pair(cv::Rect({gap, caption}, left->second.size())));
+    right->second.copyTo(
+        pair(cv::Rect({left->second.cols + 2 * gap, caption}, right->second.size())));
+    write_text(pair, fmt::format("frame {}", answer.frame), {gap, caption - 7});
+    write_text(pair, fmt::format("{}, {}", name_of(answer.match->place), how_sure(answer)),
+               {left->second.cols + 2 * gap, caption - 7});
+    pairs.push_back(pair);
+  }
+  if (pairs.empty()) return false;
+  // Two columns of equal pairs; an odd one is completed with white.
+  cv::Mat sheet;
+  for (std::size_t i = 0; i < pairs.size(); i += 2) {
+    cv::Mat right(pairs[i].size(), CV_8UC3, cv::Scalar::all(255));
+    if (i + 1 < pairs.size()) right = pairs[i + 1];
+    cv::Mat row;
+    cv::hconcat(pairs[i], right, row);
+    sheet.push_back(row);
+  }
+  write_png(folder / "matches.png", sheet);
+  return true;
+}
+
+Pictures frames_of(const PictureRecorder::Reopen& drive, const std::vector<Answer>& answers) {
+  std::vector<std::uint64_t> frames;
+  for (const Answer& answer : answers) frames.push_back(answer.frame);
+  return fetch(*drive(), frames);
 }
 
 }  // namespace
@@ -130,12 +185,20 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   cv::Mat inside = picture(cv::Rect(margin, margin / 2, plot_size, plot_size));
   cv::cvtColor(plot, inside, cv::COLOR_GRAY2BGR);
   const auto frames = static_cast<double>(queries_.size() * step_);
+  const auto height_of = [&map](std::size_t row) {
+    const double y = static_cast<double>(row) / static_cast<double>(map.size());
+    return plot_size - static_cast<int>(y * plot_size);
+  };
+  for (std::size_t session = 1; session < map.order().sessions(); ++session) {
+    const int y = height_of(map.order().session(session).first);
+    cv::line(inside, {0, y}, {plot_size, y}, border_colour);
+  }
   for (const Answer& answer : matches_) {
+    const auto row = map.order().row_of_number(answer.match->place);
+    if (!row) continue;
     const double x = static_cast<double>(answer.frame) / frames;
-    const double y = static_cast<double>(answer.match->place) / static_cast<double>(map.size());
-    cv::circle(inside,
-               {static_cast<int>(x * plot_size), plot_size - static_cast<int>(y * plot_size)}, 2,
-               match_colour, cv::FILLED, cv::LINE_AA);
+    cv::circle(inside, {static_cast<int>(x * plot_size), height_of(*row)}, 2, match_colour,
+               cv::FILLED, cv::LINE_AA);
   }
   draw_axis(picture, true, queries_.size() * step_);
   draw_axis(picture, false, map.size());
@@ -145,55 +208,44 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   write_png(folder / "difference_matrix.png", picture);
 }
 
-bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
-                                  const Reopen& reference) const {
+/// Up to ten matches, evenly over the drive.
+std::vector<Answer> PictureRecorder::chosen() const {
   constexpr std::size_t most_pairs = 10;
   const std::size_t count = std::min(most_pairs, matches_.size());
-  std::vector<Answer> chosen;
-  std::vector<std::uint64_t> frames;
-  std::vector<std::uint64_t> places;
+  std::vector<Answer> some;
   for (std::size_t i = 0; i < count; ++i) {
-    chosen.push_back(matches_[(2 * i + 1) * matches_.size() / (2 * count)]);
-    frames.push_back(chosen.back().frame);
-    places.push_back(chosen.back().match->place);
+    some.push_back(matches_[(2 * i + 1) * matches_.size() / (2 * count)]);
   }
-  const auto seen = fetch(*query(), frames);
-  const auto known = fetch(*reference(), places);
+  return some;
+}
 
-  // All pairs get the room of the tallest picture, so that a drive of mixed sizes fits the sheet.
-  int height = 0;
-  for (const auto& pictures : {seen, known}) {
-    for (const auto& [frame, picture] : pictures) height = std::max(height, picture.rows);
+bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
+                                  const Reopen& reference) const {
+  const std::vector<Answer> some = chosen();
+  std::vector<std::uint64_t> places;
+  for (const Answer& answer : some) places.push_back(answer.match->place);
+  const auto name = [](std::uint64_t place) { return fmt::format("is place {}", place); };
+  return write_sheet(folder, some, frames_of(query, some), fetch(*reference(), places), name);
+}
+
+bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
+                                  const LastingMap& map) const {
+  const std::vector<Answer> some = chosen();
+  const std::unique_ptr<PlacePictures> pictures = map.pictures();
+  Pictures known;
+  for (const Answer& answer : some) {
+    const std::string jpeg = pictures->jpeg(answer.match->place);
+    if (jpeg.empty()) continue;
+    const std::vector<char> bytes(jpeg.begin(), jpeg.end());
+    const cv::Mat thumbnail = cv::imdecode(bytes, cv::IMREAD_COLOR);
+    if (!thumbnail.empty()) known[answer.match->place] = small(thumbnail, cv::INTER_LINEAR);
   }
-  std::vector<cv::Mat> pairs;
-  for (const Answer& answer : chosen) {
-    const auto left = seen.find(answer.frame);
-    const auto right = known.find(answer.match->place);
-    if (left == seen.end() || right == known.end()) continue;
-    constexpr int caption = 24;
-    constexpr int gap = 6;
-    cv::Mat pair(height + caption + gap, left->second.cols + right->second.cols + 3 * gap, CV_8UC3,
-                 cv::Scalar::all(255));
-    left->second.copyTo(pair(cv::Rect({gap, caption}, left->second.size())));
-    right->second.copyTo(
-        pair(cv::Rect({left->second.cols + 2 * gap, caption}, right->second.size())));
-    write_text(pair, fmt::format("frame {}", answer.frame), {gap, caption - 7});
-    write_text(pair, fmt::format("is place {}, {}", answer.match->place, how_sure(answer)),
-               {left->second.cols + 2 * gap, caption - 7});
-    pairs.push_back(pair);
-  }
-  if (pairs.empty()) return false;
-  // Two columns of equal pairs; an odd one is completed with white.
-  cv::Mat sheet;
-  for (std::size_t i = 0; i < pairs.size(); i += 2) {
-    cv::Mat right(pairs[i].size(), CV_8UC3, cv::Scalar::all(255));
-    if (i + 1 < pairs.size()) right = pairs[i + 1];
-    cv::Mat row;
-    cv::hconcat(pairs[i], right, row);
-    sheet.push_back(row);
-  }
-  write_png(folder / "matches.png", sheet);
-  return true;
+  const auto name = [&map](std::uint64_t place) {
+    const LastingMap::Seen seen = map.where(place);
+    return seen.frame ? fmt::format("is {} of {}", *seen.frame, seen.session)
+                      : fmt::format("is place {}", place);
+  };
+  return write_sheet(folder, some, frames_of(query, some), known, name);
 }
 
 }  // namespace seqloop::program

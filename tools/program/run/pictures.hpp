@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "program/map/lasting_map.hpp"
 #include "seqloop/frame_report.hpp"
 #include "seqloop/frame_source.hpp"
 #include "seqloop/place_map.hpp"
@@ -41,7 +42,13 @@ class PictureRecorder {
   bool write_pairs(const std::filesystem::path& folder, const Reopen& query,
                    const Reopen& reference) const;
 
+  /// The same of a map that lasts, with places as its thumbnails show them, as far as it has any.
+  bool write_pairs(const std::filesystem::path& folder, const Reopen& query,
+                   const LastingMap& map) const;
+
  private:
+  [[nodiscard]] std::vector<Answer> chosen() const;
+
   Difference difference_;
   std::uint64_t step_ = 1;  // every step_-th frame is kept
   std::vector<std::vector<float>> queries_;

@@ -132,10 +132,6 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);
   const bool given = !settings.reference.empty();
-  if (lasts && !settings.pictures.empty()) {
-    faults.push_back({"pictures", "a map that lasts has no pictures of earlier sessions to show",
-                      "leave --pictures or --map out"});
-  }
   if (pictures || (given && !is_described(settings.reference))) {
     suit_descriptor(drive, setup.config.difference, faults);
     collect(faults, [&] { setup.describer = open_describer(drive); });

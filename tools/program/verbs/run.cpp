@@ -35,15 +35,19 @@
 namespace seqloop::program {
 namespace {
 
+/// @param lasting the map of the run; null: it ends with it
 void write_pictures(const RunSettings& settings, const PictureRecorder& recorder,
-                    const PlaceMap& map) {
+                    const PlaceMap& map, const LastingMap* lasting) {
   const auto reopen = [&](const std::filesystem::path& path) {
     return [&settings, path] { return open_drive(path, "source", settings.drive); };
   };
   recorder.write_matrix(settings.pictures, map);
-  const bool pairs = recorder.write_pairs(
-      settings.pictures, reopen(settings.source),
-      reopen(settings.reference.empty() ? settings.source : settings.reference));
+  const bool pairs =
+      lasting != nullptr
+          ? recorder.write_pairs(settings.pictures, reopen(settings.source), *lasting)
+          : recorder.write_pairs(
+                settings.pictures, reopen(settings.source),
+                reopen(settings.reference.empty() ? settings.source : settings.reference));
   say("pictures in {}: difference_matrix.png{}", settings.pictures.string(),
       pairs ? ", matches.png" : "; no matched pictures to show side by side");
 }
@@ -235,7 +239,9 @@ void run(const RunSettings& settings, Faults faults) {
     setup.summary->write(run_report(summary, conditions));
     setup.summary->commit();
   }
-  if (!settings.pictures.empty() && !unwritten) write_pictures(settings, recorder, map);
+  if (!settings.pictures.empty() && !unwritten) {
+    write_pictures(settings, recorder, map, setup.map.get());
+  }
   say_raw("seqloop: " + summary.text());
   if (!unwritten) {
     setup.loops->end();

@@ -151,7 +151,13 @@ class MapInfo:
         return sum(session.places for session in self.sessions)
 
 
-def match(reference: Floats | None, query: Floats, **settings: Setting) -> Matches:
+def _setup_error(faults: list[tuple[str, str, str]]) -> SetupError:
+    error = SetupError("\n".join(f"{what}: {why}; {remedy}" for what, why, remedy in faults))
+    error.faults = faults
+    return error
+
+
+def match(reference: Floats | None, query: Floats | None = None, **settings: Setting) -> Matches:
     """Matches a drive with an earlier one, or with itself, as `seqloop match` does.
 
     reference: [N, D], a row a place; None closes loops within the query.
@@ -159,6 +165,15 @@ def match(reference: Floats | None, query: Floats, **settings: Setting) -> Match
     settings: see seqloop.settings().
     Errors: SetupError.
     """
+    faults: list[tuple[str, str, str]] = []
+    for name, given in (("reference", reference), ("query", query)):
+        if isinstance(given, (str, os.PathLike)):
+            faults.append((name, f"'{os.fspath(given)}' is a name, not an array of descriptors",
+                           "numpy.load a described drive, or take describe_drive of pictures"))
+    if query is None:
+        faults.append(("query", "not given", "match(None, query) closes loops within one drive"))
+    if faults or query is None:
+        raise _setup_error(faults)
     return Matches(**_core.match(reference, query, **settings))
 
 
