@@ -46,13 +46,28 @@ std::string_view localhost(const Environment& environment, Faults& faults) {
   return {};
 }
 
+/// Of the threads through which messages pass: the one that reads sockets (there are others
+/// otherwise, which cannot be scheduled), the one that puts pieces together, and the one that asks
+/// for lost ones again.
+std::string scheduling(int priority) {
+  std::string threads;
+  for (const char* const name : {"recv", "dq.user", "tev"}) {
+    threads += std::string("<Thread Name=\"") + name +
+               "\"><Scheduling><Class>Realtime</Class><Priority>" + std::to_string(priority) +
+               "</Priority></Scheduling></Thread>";
+  }
+  return "<CycloneDDS><Domain><Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
+         "</Internal><Threads>" +
+         threads + "</Threads></Domain></CycloneDDS>";
+}
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-Network network(const Environment& environment) {
+Network network(const Environment& environment, int priority) {
   Network network;
   Faults faults;
   if (const char* const text = environment("ROS_DOMAIN_ID"); text != nullptr && *text != '\0') {
@@ -66,6 +81,7 @@ Network network(const Environment& environment) {
     }
   }
   network.configuration = limits;
+  if (priority > 0) network.configuration += "," + scheduling(priority);
   if (const std::string_view local = localhost(environment, faults); !local.empty()) {
     network.configuration += "," + std::string(local);
   }

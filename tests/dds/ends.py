@@ -3,8 +3,10 @@
 """The program on ROS 2's wire, with Fast DDS at the other ends.
 
 Usage: ends.py short SEQLOOP STREET FAST_END          some seconds; nothing depends on how fast the machine is
-       ends.py long  SEQLOOP STREET FAST_END SHARED   Gardens Point at 30 frames a second, 100 restarts, npm's
-                                                      decoder; needs an idle machine
+       ends.py long  SEQLOOP STREET FAST_END SHARED [PART...]   npm's decoder, a pose graph, 100 restarts, and
+                                                      Gardens Point at 30 frames a second, with real-time
+                                                      priority where that is granted: otherwise it needs an
+                                                      idle machine. PARTs: decoder pose_graph restarts gardens
 Exit code 77 where something is missing; with SEQLOOP_REQUIRE_DATA set, that fails.
 """
 import json
@@ -12,20 +14,18 @@ import os
 import pathlib
 import re
 import shutil
-import signal
 import struct
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from dds import ros  # noqa: E402
+from dds.live_run import (COMPRESSED, SECOND, TOPIC, Run, accepted, drive, expect, frames_of, heard,  # noqa: E402
+                          stamp)
 
 HERE = pathlib.Path(__file__).resolve().parent
-TOPIC = "/camera/image_raw"
-IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
-SECOND = 1_000_000_000
+IMAGE = "sensor_msgs/msg/Image"
 
 
 def skip(why: str) -> None:
@@ -33,57 +33,10 @@ def skip(why: str) -> None:
     sys.exit(1 if os.environ.get("SEQLOOP_REQUIRE_DATA") else 77)
 
 
-def expect(what: bool, told: str) -> None:
-    if not what:
-        sys.exit("not so: " + told)
-    print(told, flush=True)
-
-
-def stamp(frame: int, rate: float) -> int:
-    return ros.START_S * SECOND + int(frame * SECOND / rate)
-
-
-class Run:
-    """`seqloop run` on a topic; its lines are in a file."""
-
-    def __init__(self, seqloop: str, work: pathlib.Path, *more: object, env: dict | None = None) -> None:
-        self.lines, self.said = work / "lines.jsonl", work / "said"
-        with self.said.open("w") as said:
-            self.process = subprocess.Popen(
-                [str(word) for word in (seqloop, "run", "--source", "ros:" + TOPIC, "--out", self.lines,
-                                        "--summary", work / "summary.json", *more)],
-                stderr=said, env=env or ros.environment())
-        self.summary = work / "summary.json"
-        # What comes before the loop runs counts for nothing; that it does, its first lines tell: nobody publishes.
-        while not any(file.stat().st_size > 0 for file in work.glob(".lines.jsonl*")):
-            if self.process.poll() is not None:
-                sys.exit(f"run ended: {self.said.read_text()}")
-            time.sleep(0.1)
-
-    def end(self) -> list[dict]:
-        """As Ctrl-C does. @return the lines"""
-        self.process.send_signal(signal.SIGINT)
-        code = self.process.wait()
-        if code != 0:
-            sys.exit(f"run ended with {code}: {self.said.read_text()}")
-        return [json.loads(line) for line in self.lines.read_text().splitlines()]
-
-    def captured(self) -> dict:
-        return json.loads(self.summary.read_text())["captured"]
-
-
 def street(program: str, work: pathlib.Path, frames: int) -> tuple[pathlib.Path, list[pathlib.Path]]:
     """A street that is driven along twice. @return the places' folder, and the pictures of the second drive"""
     subprocess.run([program, "--out", work / "street", "--frames", str(frames), "--quiet"], check=True)
     return work / "street/reference", sorted((work / "street/query").glob("*.jpg"))
-
-
-def frames_of(lines: list[dict]) -> list[dict]:
-    return [line for line in lines if line["status"] not in ("no_frame", "ended")]
-
-
-def accepted(lines: list[dict]) -> list[dict]:
-    return [answer for line in lines for answer in line["answers"] if answer["status"] == "match"]
 
 
 def read_closure(message: bytes) -> dict:
@@ -112,13 +65,14 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
         ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
         ("/seqloop/matched_pair/compressed", COMPRESSED))}
     run = Run(seqloop, work, "--reference", places, "--ros")
-    publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED)
-    publisher.wait_until_heard()
+    for listener in listeners.values():
+        listener.wait_until_heard()
+    publisher, delay = heard(run, fast_end, COMPRESSED)
     sent = 0
 
     def send(message: bytes) -> None:
         nonlocal sent
-        publisher.send(message, 0.7 + sent / 20)
+        publisher.send(message, delay + sent / 20)
         sent += 1
 
     for i, picture in enumerate(pictures):
@@ -130,7 +84,7 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
         send(message)
     send(ros.compressed_image(stamp(len(pictures) + 1, 20), pictures[-1].read_bytes()))
     expect(publisher.end() == "", "Fast DDS published all")
-    time.sleep(1.0)
+    run.wait_until_taken(sent)
     lines = run.end()
     frames, counts = frames_of(lines), run.captured()
     # What came before the first that was taken counts for nothing.
@@ -149,6 +103,27 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
     expect(not wrong, "their stamps are the headers', to the nanosecond")
     for name, least in (("/seqloop/status", 3), ("/diagnostics", 3), ("/seqloop/matched_pair/compressed", 1)):
         expect(len(listeners[name].messages()) >= least, f"{name} came too")
+    sessions(seqloop, places, pictures[:80], fast_end, work / "sessions")
+
+
+def sessions(seqloop: str, places: pathlib.Path, pictures: list[pathlib.Path], fast_end: pathlib.Path,
+             work: pathlib.Path) -> None:
+    """Loop closures say of which session of a map their places are."""
+    work.mkdir()
+    begun = subprocess.run([seqloop, "run", "--source", places, "--map", work / "m.seqloop", "--session", "monday",
+                            "--out", os.devnull], capture_output=True, text=True)
+    if "made without SQLite" in begun.stderr:
+        return
+    expect(begun.returncode == 0, "a map of one session")
+    listener = ros.Listener(fast_end, "/seqloop/loop_closures", "seqloop_msgs/msg/LoopClosure")
+    run = Run(seqloop, work, "--map", work / "m.seqloop", "--session", "tuesday", "--ros", "--decide-by",
+              "uniqueness")
+    listener.wait_until_heard()
+    answers = accepted(drive(run, fast_end, pictures))
+    loops = [read_closure(message) for message in listener.messages()]
+    expect([(loop["frame"], loop["match"], loop["session"]) for loop in loops]
+           == [(answer["frame"], answer["match"], answer["session"]) for answer in answers] and loops
+           and all(loop["session"] == "monday" for loop in loops), f"{len(loops)} places are monday's")
 
 
 def parse_ms(said: str) -> dict:
@@ -157,9 +132,20 @@ def parse_ms(said: str) -> dict:
             for match in re.finditer(r"^  (\w+) +((?:[\d.]+ *){4})$", said, re.M)}
 
 
+def first_of_all() -> tuple:
+    """Takes real-time priority for what plays the camera, where that is granted. @return what starts its programs"""
+    try:
+        # A camera does not wait for a processor either. What is under test takes its own priority.
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(30))
+    except (PermissionError, OSError):
+        print("no real-time priority is granted here: a busy machine may drop frames")
+        return ()
+    return ("chrt", "-f", "30")
+
+
 def gardens(seqloop: str, fast_end: pathlib.Path, shared: pathlib.Path, work: pathlib.Path) -> None:
     """30 frames a second of 640x480 pictures, raw and compressed: nothing is lost, and the matches are
-    those of the same pictures in a folder."""
+    those of the same pictures in a folder, and come as soon as those of a recording played at that rate."""
     from PIL import Image
     rate = 30
     folders = {}
@@ -169,31 +155,36 @@ def gardens(seqloop: str, fast_end: pathlib.Path, shared: pathlib.Path, work: pa
             folder.mkdir()
             for file in sorted((shared / "data/gardens_point" / name).glob("*.jpg")):
                 Image.open(file).resize((640, 480)).save(folder / f"{file.stem}.{kind}")
+    before = first_of_all()
+    flags = ("--realtime-priority", 10) if before else ()
     for kind, message_type, reliable in (("png", IMAGE, True), ("jpg", COMPRESSED, True), ("png", IMAGE, False)):
-        places, drive = folders["day_left", kind], folders["night_right", kind]
-        alone = subprocess.run([seqloop, "run", "--source", drive, "--reference", places], check=True,
+        places, query = folders["day_left", kind], folders["night_right", kind]
+        what = f"{message_type.split('/')[-1]}, {'reliable' if reliable else 'best effort'}"
+        alone = subprocess.run([seqloop, "run", "--source", query, "--reference", places], check=True,
                                capture_output=True, text=True).stdout
         of_folder = [json.loads(line) for line in alone.splitlines()]
-        pictures = sorted(drive.iterdir())
+        played = subprocess.run(
+            [str(word) for word in (seqloop, "run", "--source", query, "--reference", places, "--pace", "live",
+                                    "--fps", rate, "--out", os.devnull, *flags)],
+            check=True, capture_output=True, text=True).stderr
         raw = [Image.open(file).convert("RGB").tobytes() if kind == "png" else file.read_bytes()
-               for file in pictures]
-        run = Run(seqloop, work, "--reference", places)
-        publisher = ros.Publisher(fast_end, TOPIC, message_type, reliable)
-        publisher.wait_until_heard()
+               for file in sorted(query.iterdir())]
+        run = Run(seqloop, work, "--reference", places, *flags)
+        publisher, delay = heard(run, fast_end, message_type, reliable, before)
         # Stamped with when they are due, so that their ages are those of a camera's.
-        delay = 1.0
         for i, data in enumerate(raw):
             at = publisher.start_ns + int((delay + i / rate) * SECOND)
             publisher.send(ros.image(at, 640, 480, "rgb8", 1920, data) if kind == "png"
                            else ros.compressed_image(at, data), delay + i / rate)
         expect(publisher.end() == "", "Fast DDS published all")
-        time.sleep(1.0)
+        run.wait_until_taken(len(raw))
         lines, counts = run.end(), run.captured()
-        what = f"{message_type.split('/')[-1]}, {'reliable' if reliable else 'best effort'}"
-        ages = parse_ms(run.said.read_text())
-        print(f"{what}: {counts}; age p50 p99 p99.9 max {ages.get('age')} ms", flush=True)
+        for name, said in (("topic", run.said.read_text()), ("folder at its pace", played)):
+            times = parse_ms(said)
+            print(f"{what}, {name}: ms p50 p99 p99.9 max: age {times.get('age')}, stamp to answer {times.get('answer')}",
+                  flush=True)
         expect(counts["taken"] == len(raw) and counts["lost"] == 0 and counts["dropped"] == 0,
-               f"{what}: all {len(raw)} pictures came, 0 lost, 0 dropped")
+               f"{what}: {counts}; all {len(raw)} pictures came, 0 lost, 0 dropped")
         keys = ("frame", "match", "probability", "uniqueness")
         of = [[{key: answer[key] for key in keys} for line in some for answer in line["answers"]]
               for some in (of_folder, lines)]
@@ -210,17 +201,17 @@ def restarts(seqloop: str, fast_end: pathlib.Path, work: pathlib.Path, pictures:
     resident, pieces = [], 5
     data = pictures[0].read_bytes()
     for i in range(100):
-        publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED, i % 2 == 0)
-        publisher.wait_until_heard()
+        publisher, delay = heard(run, fast_end, COMPRESSED, i % 2 == 0)
         for k in range(pieces):
-            publisher.send(ros.compressed_image(stamp(i * pieces + k, 20), data), k / 20)
-        time.sleep(pieces / 20 + 0.3)
+            publisher.send(ros.compressed_image(stamp(i * pieces + k, 20), data), delay + k / 20)
+        run.wait_until_taken((i + 1) * pieces)
         publisher.kill()
         resident.append(resident_kb(run.process))
     open_files = len(list(pathlib.Path(f"/proc/{run.process.pid}/fd").iterdir()))
     threads = len(list(pathlib.Path(f"/proc/{run.process.pid}/task").iterdir()))
     lines, counts = run.end(), run.captured()
-    expect(counts["grabbed"] >= 100 * pieces * 0.9,
+    # Every second one sends nothing again.
+    expect(counts["grabbed"] >= 100 * pieces * 0.98,
            f"100 publishers were killed: {counts['grabbed']} of {100 * pieces} messages came, {counts}")
     growth = resident[-1] - resident[19]
     expect(growth < 20_000, f"resident after 20 of them {resident[19]} kB, after 100 {resident[-1]} kB; "
@@ -264,13 +255,9 @@ def decoder(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pat
              "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray", "/seqloop/matched_pair/compressed": COMPRESSED}
     listeners = {name: ros.Listener(fast_end, name, kind) for name, kind in kinds.items()}
     run = Run(seqloop, work, "--reference", places, "--ros")
-    publisher = ros.Publisher(fast_end, TOPIC, COMPRESSED)
-    publisher.wait_until_heard()
-    for i, picture in enumerate(pictures):
-        publisher.send(ros.compressed_image(stamp(i, 20), picture.read_bytes()), i / 20)
-    publisher.end()
-    time.sleep(1.5)
-    answers = accepted(run.end())
+    for listener in listeners.values():
+        listener.wait_until_heard()
+    answers = accepted(drive(run, fast_end, pictures))
     of = {name: decoded(work, kinds[name], listener.messages()) for name, listener in listeners.items()}
     loops = of["/seqloop/loop_closures"]
     expect([(loop["frame"], loop["match"]) for loop in loops] == [(a["frame"], a["match"]) for a in answers]
@@ -294,8 +281,7 @@ def pose_graph(seqloop: str, street_program: str, fast_end: pathlib.Path, work: 
     graph = work / "graph.g2o"
     run = Run(seqloop, work, "--odometry", "/odom", "--pose-graph", graph, "--exclude", 40,
               "--decide-by", "uniqueness")
-    camera = ros.Publisher(fast_end, TOPIC, COMPRESSED)
-    camera.wait_until_heard()
+    camera, _ = heard(run, fast_end, COMPRESSED)
     odometry = ros.Publisher(fast_end, "/odom", "nav_msgs/msg/Odometry", False)
     odometry.wait_until_heard()
     events = [(i / rate, camera, ros.compressed_image(stamp(i, rate), picture.read_bytes()))
@@ -303,9 +289,9 @@ def pose_graph(seqloop: str, street_program: str, fast_end: pathlib.Path, work: 
     events += [(i / odometry_rate, odometry, ros.odometry(stamp(i, odometry_rate), i / odometry_rate, 2.0, (0, 0, 0, 1)))
                for i in range(-5, len(pictures) * odometry_rate // rate + 5)]
     for due, publisher, message in sorted(events, key=lambda event: event[0]):
-        publisher.send(message, 2.0 + due)
+        publisher.send(message, (odometry.start_ns - camera.start_ns) / SECOND * (publisher is camera) + 2.0 + due)
     expect(camera.end() == odometry.end() == "", "Fast DDS published pictures and odometry")
-    time.sleep(1.0)
+    run.wait_until_taken(len(pictures))
     lines = run.end()
     taken = {line["sequence"] for line in frames_of(lines)}
     rows = [line.split() for line in graph.read_text().splitlines()]

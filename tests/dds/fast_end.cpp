@@ -7,7 +7,8 @@
 // TOPIC and TYPE as DDS names them. A message is 4 bytes that say how long it is, 4 that say when
 // it is due, in microseconds after the first one, and its CDR. The domain is ROS_DOMAIN_ID.
 // `publish` waits until it is heard, and in the end until all has arrived; it says "heard" on
-// stderr.
+// stderr. `listen` says "listening", and "heard" when it has found who publishes; it ends when
+// standard input does, and it has taken all that came.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -18,6 +19,9 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
+
+#include <poll.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
@@ -121,7 +125,17 @@ int listen(fast::DomainParticipant& participant, fast::Topic* topic, bool reliab
   std::cerr << "listening" << std::endl;
   Bytes message;
   fast::SampleInfo info;
-  while (std::cout) {
+  bool heard = false;
+  bool over = false;
+  while (std::cout && !over) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    over = ::poll(&input, 1, 0) > 0;  // before the last look
+    fast::SubscriptionMatchedStatus matched;
+    if (!heard && reader->get_subscription_matched_status(matched) == ReturnCode_t::RETCODE_OK &&
+        matched.current_count > 0) {
+      heard = true;
+      std::cerr << "heard" << std::endl;
+    }
     reader->wait_for_unread_message({0, 100'000'000});
     while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;

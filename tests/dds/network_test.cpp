@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "expect_setup_error.hpp"
 
@@ -28,6 +29,20 @@ TEST(Network, WithoutVariablesItIsDomain0OfTheWholeSubnet) {
   EXPECT_TRUE(says(network, "MaxSampleSize"));
   EXPECT_FALSE(says(network, "127.0.0.1"));
   EXPECT_FALSE(says(network, "AllowMulticast"));
+}
+
+TEST(Network, WhatReceivesIsScheduledAsAsked) {
+  EXPECT_FALSE(says(of({}), "Scheduling"));
+  const Network network = seqloop::dds::network([](const char*) { return nullptr; }, 81);
+  EXPECT_TRUE(says(network,
+                   "<Thread Name=\"recv\"><Scheduling><Class>Realtime</Class><Priority>81</"
+                   "Priority></Scheduling></Thread>"));
+  const Network overridden = seqloop::dds::network(
+      [](const char* name) {
+        return std::string_view(name) == "CYCLONEDDS_URI" ? "<CycloneDDS/>" : nullptr;
+      },
+      81);
+  EXPECT_TRUE(overridden.configuration.ends_with(",<CycloneDDS/>")) << "the user's word is last";
 }
 
 TEST(Network, Domain) {

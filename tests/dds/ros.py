@@ -65,18 +65,18 @@ class Publisher:
     """Fast DDS as a publisher of messages that are due at times, in seconds after the first."""
 
     def __init__(self, fast_end: pathlib.Path, topic: str, kind: str, reliable: bool = True,
-                 env: dict | None = None) -> None:
+                 before: tuple = ()) -> None:
+        """`before`: a command that starts it."""
         package, name = kind.split("/msg/")
         self.process = subprocess.Popen(
-            [fast_end, "publish", "rt" + topic, f"{package}::msg::dds_::{name}_",
+            [*before, fast_end, "publish", "rt" + topic, f"{package}::msg::dds_::{name}_",
              "reliable" if reliable else "best_effort"],
-            stdin=subprocess.PIPE, stderr=subprocess.PIPE, env=env or environment())
+            stdin=subprocess.PIPE, stderr=subprocess.PIPE, env=environment())
 
     def wait_until_heard(self) -> None:
         line = self.process.stderr.readline()
         assert line == b"heard\n", line
         self.start_ns = time.time_ns()  # from which on it counts when messages are due
-        time.sleep(0.5)  # the other side may know of it a little later
 
     def send(self, message: bytes, due_s: float = 0.0) -> None:
         self.process.stdin.write(struct.pack("<II", len(message), int(due_s * 1e6)) + message)
@@ -102,14 +102,16 @@ class Listener:
         self.process = subprocess.Popen(
             [fast_end, "listen", "rt" + topic, f"{package}::msg::dds_::{name}_",
              "reliable" if reliable else "best_effort"],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment())
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment())
         assert self.process.stderr.readline() == b"listening\n"
+
+    def wait_until_heard(self) -> None:
+        """Returns when it has found who publishes."""
+        assert self.process.stderr.readline() == b"heard\n"
 
     def messages(self) -> list[bytes]:
         """All that came until now; ends it."""
-        self.process.terminate()
-        data = self.process.stdout.read()
-        self.process.wait()
+        data = self.process.communicate()[0]
         found = []
         while len(data) >= 8:
             size = struct.unpack_from("<I", data)[0]

@@ -73,6 +73,20 @@ TEST_F(Bags, TheSameAnswersAsFromTheFolder) {
   EXPECT_TRUE(facts["notes"].empty());
 }
 
+TEST_F(Bags, LoopsSayOfWhichSessionTheirPlacesAre) {
+  if (SEQLOOP_MAPS == 0) GTEST_SKIP() << "this build keeps no maps in files";
+  const std::string drive = "run --source drive.mcap --out /dev/null --exclude 20 ";
+  ASSERT_EQ(run(drive + "--map m.seqloop --session monday").exit_code, 0);
+  const test::Outcome second =
+      run(drive + "--map m.seqloop --session tuesday --out-bag loops.mcap");
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  const std::string bag = test::read_all(file("loops.mcap"));
+  // Serialised: 7 bytes with the zero behind them.
+  EXPECT_NE(bag.find(std::string("\7\0\0\0monday\0", 11)), std::string::npos);
+  ASSERT_EQ(run(drive + "--out-bag alone.mcap").exit_code, 0);
+  EXPECT_EQ(test::read_all(file("alone.mcap")).find("monday"), std::string::npos);
+}
+
 TEST_F(Bags, WhatOneHolds) {
   const test::Outcome outcome = run("bag info drive.mcap");
   EXPECT_EQ(outcome.exit_code, 0);

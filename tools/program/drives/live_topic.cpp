@@ -38,9 +38,9 @@ class HeldCamera : public CaptureDevice {
 
 }  // namespace
 
-std::shared_ptr<dds::Participant> join_ros() {
-  return std::make_shared<dds::Participant>(
-      dds::network([](const char* name) { return std::getenv(name); }));
+std::shared_ptr<dds::Participant> join_ros(const RealTimeSettings& real_time) {
+  return std::make_shared<dds::Participant>(dds::network(
+      [](const char* name) { return std::getenv(name); }, real_time.capture_thread().priority));
 }
 
 LiveTopic open_topic(const std::filesystem::path& path,

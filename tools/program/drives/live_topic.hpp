@@ -20,9 +20,9 @@ class Participant;
 
 namespace seqloop::program {
 
-/// Joins ROS 2's network, as the environment says. Nothing is opened before.
-/// Throws SetupError; also where this build has no DDS.
-[[nodiscard]] std::shared_ptr<dds::Participant> join_ros();
+/// Joins ROS 2's network, as the environment says. Nothing is opened before. What receives messages
+/// is scheduled as a capture thread is. Throws SetupError; also where this build has no DDS.
+[[nodiscard]] std::shared_ptr<dds::Participant> join_ros(const RealTimeSettings& real_time);
 
 /// A topic that is listened to.
 struct LiveTopic {

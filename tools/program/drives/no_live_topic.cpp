@@ -4,7 +4,7 @@
 
 namespace seqloop::program {
 
-std::shared_ptr<dds::Participant> join_ros() {
+std::shared_ptr<dds::Participant> join_ros(const RealTimeSettings& /*real_time*/) {
   throw SetupError({"ROS 2", "this program was built without it",
                     "build it where Debian's cyclonedds-dev and cyclonedds-tools are installed"});
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "program/run/frame_times.hpp"
 #include "seqloop/frame_report.hpp"
@@ -23,8 +24,10 @@ namespace seqloop::program {
 /// An answer that closes a loop, as ROS 2 is told it.
 /// @param times of the drive's frames
 /// @param own_places whether places are frames of the drive itself
+/// @param session of the place; empty where there is no map that lasts
 [[nodiscard]] inline ros::LoopClosure closure_of(const Answer& answer, const FrameTimes& times,
-                                                 std::int64_t start_ns, bool own_places) noexcept {
+                                                 std::int64_t start_ns, bool own_places,
+                                                 std::string_view session) noexcept {
   const auto stamp = [&](std::uint64_t frame) {
     const std::optional<double> time_s = times.at(frame);
     return time_s ? stamp_of(start_ns, *time_s) : 0;
@@ -33,7 +36,7 @@ namespace seqloop::program {
           .match_stamp_ns = own_places ? stamp(answer.match->place) : 0,
           .frame = answer.frame,
           .match = answer.match->place,
-          .session = {},
+          .session = session,
           .probability = static_cast<double>(answer.probability),
           .uniqueness = static_cast<double>(answer.match->uniqueness),
           .score = static_cast<double>(answer.match->score),

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 
+#include "program/map/lasting_map.hpp"
 #include "program/run/frame_times.hpp"
 #include "seqloop/bags/loop_bag.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -20,9 +21,9 @@ class ClosuresBag {
   /// Adds those that are accepted. @param times of the drive's frames
   /// @param start_ns when second 0 of the drive was, since 1970
   /// @param own_places whether places are frames of the drive itself
-  /// Throws files::IoError.
+  /// @param map that places are of; null: none that lasts. Throws files::IoError.
   void add(std::span<const Answer> answers, const FrameTimes& times, std::int64_t start_ns,
-           bool own_places);
+           bool own_places, const LastingMap* map);
 
   /// Throws files::IoError.
   void commit();

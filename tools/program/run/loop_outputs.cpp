@@ -86,7 +86,7 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
 }
 
 void LoopOutputs::add(std::span<const Answer> answers) {
-  if (bag_) bag_->add(answers, times_, drive_.start_ns(), own_places_);
+  if (bag_) bag_->add(answers, times_, drive_.start_ns(), own_places_, drive_.map);
   if (!graph_) return;
   if (topic_.empty()) {
     graph_->add(answers);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "program/map/lasting_map.hpp"
 #include "program/options/options.hpp"
 #include "program/run/closures_bag.hpp"
 #include "program/run/frame_times.hpp"
@@ -43,6 +44,7 @@ struct LoopDrive {
   std::size_t sequence = 1;                     ///< frames of a window: ds + 1
   /// Of a live drive: the odometry that has come; none where none is asked for.
   std::function<std::vector<ros::OdometryPose>()> odometry = {};
+  const LastingMap* map = nullptr;  ///< that places are of; null: none that lasts
 };
 
 /// Takes a run's accepted answers, and writes what is made of them. Nothing, unless asked for.

@@ -143,7 +143,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   std::function<std::vector<ros::OdometryPose>()> odometry;
   if (settings.ros || live_odometry || is_topic(settings.source)) {
     collect(faults, [&] {
-      setup.ros = join_ros();
+      setup.ros = join_ros(settings.real_time);
       if (live_odometry) odometry = open_odometry(settings.loops.odometry, setup.ros);
     });
   }
@@ -175,8 +175,9 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   if (!setup.start_ns) {
     setup.start_ns = [start = start_ns(setup.recording.get())] { return start; };
   }
-  setup.loops->begin(settings.loops, {settings.source, setup.recording.get(), setup.start_ns,
-                                      setup.config.sequence_length + 1, std::move(odometry)});
+  setup.loops->begin(settings.loops,
+                     {settings.source, setup.recording.get(), setup.start_ns,
+                      setup.config.sequence_length + 1, std::move(odometry), setup.map.get()});
   return setup;
 }
 

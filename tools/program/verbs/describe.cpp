@@ -49,7 +49,7 @@ void describe(const DescribeSettings& settings, Faults faults) {
   refuse(std::move(faults));
   if (topic) {
     source =
-        open_topic(settings.source, join_ros(), settings.drive.fps, *describer, {}, clock).source;
+        open_topic(settings.source, join_ros({}), settings.drive.fps, *describer, {}, clock).source;
   } else if (live) {
     LiveCamera opened =
         open_camera(settings.source, settings.camera, settings.drive.fps, *describer, {}, clock);

@@ -139,6 +139,7 @@ void run(const RunSettings& settings, Faults faults) {
   // A thread that saves is no part of the loop.
   if (setup.map) setup.map->begin(map, setup.config, settings.matcher.method);
   if (setup.map && serving) serving->keep_in(*setup.map);
+  if (setup.map && ros) ros->keep_in(*setup.map);
   become_real_time(settings.real_time);
   warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
   start_playing(setup, settings, clock);

@@ -10,6 +10,7 @@ RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> /*participant*/,
                        std::function<std::int64_t()> /*start_ns*/, bool /*own_places*/) {}
 RosAnswers::~RosAnswers() = default;
 void RosAnswers::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
+void RosAnswers::keep_in(const LastingMap& /*map*/) {}
 void RosAnswers::publish(const ProcessedFrame& /*processed*/, const LoopState& /*state*/,
                          const RunSummary& /*summary*/, const MapState& /*map*/,
                          Nanoseconds /*moment*/) noexcept {}

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
@@ -65,7 +66,9 @@ class RosAnswers::Impl {
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_ + watch.unseen(); }
 
   Watch watch;
-  PictureStore known;  // places of another drive; the loop fills it before the first frame
+  // The loop fills these before the first frame.
+  PictureStore known;  // places of another drive
+  std::vector<LastingMap::Session> sessions;
 
  private:
   void follow() {
@@ -108,7 +111,8 @@ class RosAnswers::Impl {
   }
 
   void send(const Answer& answer) {
-    const ros::LoopClosure closure = closure_of(answer, times_, start_ns_, own_places_);
+    const ros::LoopClosure closure =
+        closure_of(answer, times_, start_ns_, own_places_, session_of(answer.match->place));
     ++matches_;
     count(publisher_.publish(closure));
     const SteadyTime now = std::chrono::steady_clock::now();
@@ -117,6 +121,12 @@ class RosAnswers::Impl {
     const std::vector<std::uint8_t> pair =
         pair_picture(frames_, closure.frame, own_places_ ? frames_ : known, closure.match);
     if (!pair.empty()) count(publisher_.publish_pair(closure.stamp_ns, pair));
+  }
+
+  /// Numbers of places grow from session to session.
+  [[nodiscard]] std::string_view session_of(std::uint64_t place) const {
+    const auto next = std::ranges::upper_bound(sessions, place, {}, &LastingMap::Session::first);
+    return next == sessions.begin() ? std::string_view() : std::prev(next)->name;
   }
 
   void send_status() {
@@ -216,6 +226,8 @@ void RosAnswers::add_place(const Image& image, std::uint64_t number) {
   SmallPicture small;
   if (shrink(image, number, small)) impl_->known.add(small);
 }
+
+void RosAnswers::keep_in(const LastingMap& map) { impl_->sessions = map.sessions(); }
 
 void RosAnswers::publish(const ProcessedFrame& processed, const LoopState& state,
                          const RunSummary& summary, const MapState& map,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "program/map/lasting_map.hpp"
 #include "program/watch/watch.hpp"
 
 namespace seqloop::dds {
@@ -32,6 +33,10 @@ class RosAnswers {
 
   /// A picture of a place, before the first frame. Allocates: yes.
   void add_place(const Image& image, std::uint64_t number);
+
+  /// The map that lasts, once the drive has begun and before its first frame: of which sessions
+  /// places are.
+  void keep_in(const LastingMap& map);
 
   /// As `Watch::publish`.
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,

@@ -21,8 +21,9 @@ using Environment = std::function<const char*(const char*)>;
 /// have it or, where that is not set, ROS_LOCALHOST_ONLY as Humble has it (the two do not find each
 /// other); CYCLONEDDS_URI, which overrides the rest. Messages of more than 128 MiB are not taken
 /// unless that raises Internal/MaxSampleSize.
+/// @param priority SCHED_FIFO priority of the threads that receive; 0: ordinary scheduling
 /// Throws SetupError: a domain or a range that is none; discovery that is switched off.
-[[nodiscard]] Network network(const Environment& environment);
+[[nodiscard]] Network network(const Environment& environment, int priority = 0);
 
 /// Refuses a name that ROS 2 would not take for a topic. @param flag that gave it
 /// Throws SetupError.

@@ -14,7 +14,7 @@ struct LoopClosure {
   std::int64_t match_stamp_ns = 0;  ///< when the place was seen; 0: not known
   std::uint64_t frame = 0;
   std::uint64_t match = 0;
-  std::string_view session = {};  ///< of the place; empty: the drive's own
+  std::string_view session = {};  ///< of the place; empty: there is no map that lasts
   double probability = 0.0;       ///< NaN: decided by uniqueness
   double uniqueness = 0.0;        ///< NaN: none
   double score = 0.0;
