@@ -181,7 +181,7 @@ def gardens(seqloop: str, fast_end: pathlib.Path, shared: pathlib.Path, work: pa
         lines, counts = run.end(), run.captured()
         for name, said in (("topic", run.said.read_text()), ("folder at its pace", played)):
             times = parse_ms(said)
-            print(f"{what}, {name}: ms p50 p99 p99.9 max: age {times.get('age')}, stamp to answer {times.get('answer')}",
+            print(f"{what}, {name}: ms p50 p99 p99.9 max: age {times['age']}, stamp to answer {times['answer']}",
                   flush=True)
         expect(counts["taken"] == len(raw) and counts["lost"] == 0 and counts["dropped"] == 0,
                f"{what}: {counts}; all {len(raw)} pictures came, 0 lost, 0 dropped")

@@ -65,8 +65,8 @@ class Run:
         self.wait_until(lambda lines: (frames := frames_of(lines)) and frames[-1]["sequence"] >= sent - 1, 10.0)
 
     def end(self) -> list[dict]:
-        """As Ctrl-C does. @return the lines"""
-        self.process.send_signal(signal.SIGINT)
+        """@return the lines"""
+        self.process.send_signal(signal.SIGTERM)
         code = self.process.wait()
         if code != 0:
             sys.exit(f"run ended with {code}: {self.said.read_text()}")
