@@ -43,4 +43,10 @@ void BeliefTraces::removed(std::size_t row) noexcept {
   }
 }
 
+void BeliefTraces::inserted(std::size_t row) noexcept {
+  for (Traced& at : steps_) {
+    if (at.row >= row) ++at.row;
+  }
+}
+
 }  // namespace seqloop

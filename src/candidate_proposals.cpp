@@ -254,4 +254,11 @@ void CandidateProposals::removed(std::size_t row) noexcept {
   if (next_ > row) --next_;
 }
 
+void CandidateProposals::inserted(std::size_t row) noexcept {
+  for (Alike& alike : remembered_.first(count_)) {
+    if (alike.row >= row) ++alike.row;
+  }
+  if (next_ > row) ++next_;
+}
+
 }  // namespace seqloop

@@ -98,6 +98,12 @@ void CandidateRanges::removed(std::size_t row) noexcept {
   }
 }
 
+void CandidateRanges::inserted(std::size_t row) noexcept {
+  for (ScoredRow& ranked : ranked_.first(ranked_count_)) {
+    if (ranked.row >= row) ++ranked.row;
+  }
+}
+
 void CandidateRanges::adapt_k(std::size_t match, double change_degree) noexcept {
   if (change_degree < steady_from || change_degree > steady_to) {
     k_ = initial_k_;

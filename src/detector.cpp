@@ -287,6 +287,18 @@ bool Detector::become_place() noexcept {
   return taken.slot.has_value();
 }
 
+bool Detector::take_in(std::size_t session, const PlaceMap::Saved& place) noexcept {
+  const std::optional<std::size_t> row = map_->add_saved_to(session, place);
+  if (!row) return false;
+  if (*row + 1 == map_->size()) return true;
+  ranges_.inserted(*row);
+  proposals_.inserted(*row);
+  decision_.inserted(*row);
+  belief_.inserted(*row);
+  pending_.inserted(*row);
+  return true;
+}
+
 /// Rows of the map that lines may touch when a frame is matched: those of earlier sessions, and the
 /// places of the running drive that are old enough.
 std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {

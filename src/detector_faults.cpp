@@ -7,7 +7,8 @@ namespace seqloop {
 
 Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
   Faults faults = validate(config);
-  if (config.use == Use::localise && map.size() == 0) {
+  // Where there is room for several sessions, they may be taken in later.
+  if (config.use == Use::localise && map.size() == 0 && map.order().most_sessions() == 1) {
     faults.push_back(
         {"map", "it has no places", "add the reference drive before localising in it"});
   }

@@ -300,4 +300,14 @@ void PendingAnswers::removed(std::size_t row) noexcept {
   }
 }
 
+void PendingAnswers::inserted(std::size_t row) noexcept {
+  for (Waiting& waiting : waiting_) {
+    if (waiting.row >= row) ++waiting.row;
+    if (waiting.likeliest != none && waiting.likeliest >= row) ++waiting.likeliest;
+  }
+  for (FoundLine& line : lines_) {
+    if (line.row >= row) ++line.row;
+  }
+}
+
 }  // namespace seqloop

@@ -299,6 +299,13 @@ void PlaceBelief::removed(std::size_t row) noexcept {
   traces_.removed(row);
 }
 
+void PlaceBelief::inserted(std::size_t row) noexcept {
+  for (Hypothesis& at : rows_.first(count_)) {
+    if (at.row >= row) ++at.row;
+  }
+  traces_.inserted(row);
+}
+
 void PlaceBelief::restart() noexcept {
   count_ = 0;
   new_place_ = 1.0;

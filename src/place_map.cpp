@@ -89,17 +89,22 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
 }
 
 bool PlaceMap::add_saved(const Saved& place) noexcept {
-  const std::size_t first = order_.session(order_.sessions() - 1).first;
-  const bool follows = place.number >= order_.next_number() &&
-                       (first == size() || place.frame > order_.frame(size() - 1));
-  // Nothing has gone yet, so that the next slot is the next row.
-  if (size() == capacity() || !order_.straight() || !follows ||
-      !rows_.load(size(), place.descriptor)) {
-    return false;
-  }
-  static_cast<void>(append(place.frame, place.number));
-  space(size() - 1);
-  return true;
+  return add_saved_to(order_.sessions() - 1, place).has_value();
+}
+
+std::optional<std::size_t> PlaceMap::add_saved_to(std::size_t session,
+                                                  const Saved& place) noexcept {
+  const auto [first, last] = order_.session(session);
+  const bool follows = order_.may_give(session, place.number) &&
+                       (first == last || place.frame > order_.frame(last - 1)) &&
+                       (last == size() || full_map_ != FullMap::refuse);
+  const std::size_t slot = order_.next_slot();
+  if (size() == capacity() || !follows || !rows_.load(slot, place.descriptor)) return std::nullopt;
+  order_.insert(session, place.frame, place.number);
+  if (!first_visits_.empty()) first_visits_[slot] = place.number;
+  if (last_linked_ >= last && last + 1 < size()) ++last_linked_;
+  space(last);
+  return last;
 }
 
 bool PlaceMap::set_statistics(std::span<const double> mean, std::span<const double> variance,

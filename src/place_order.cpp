@@ -62,6 +62,34 @@ std::size_t PlaceOrder::append(std::uint64_t frame, std::uint64_t number) noexce
   return slot;
 }
 
+std::size_t PlaceOrder::insert(std::size_t session, std::uint64_t frame,
+                               std::uint64_t number) noexcept {
+  const std::size_t row = this->session(session).last;
+  if (row == size_) return append(frame, number);
+  straight_ = false;
+  const std::size_t slot = free_slot_;
+  if (row < size_ / 2) {
+    begin_ = begin_ == 0 ? slots_.size() - 1 : begin_ - 1;
+    for (std::size_t r = 0; r < row; ++r) slots_[at(r)] = slots_[at(r + 1)];
+  } else {
+    for (std::size_t r = size_; r > row; --r) slots_[at(r)] = slots_[at(r - 1)];
+  }
+  slots_[at(row)] = static_cast<std::uint32_t>(slot);
+  numbers_[slot] = number;
+  frames_[slot] = frame;
+  ++size_;
+  free_slot_ = size_;
+  for (Begin& begin : begins_.first(sessions_).subspan(session + 1)) ++begin.row;
+  return slot;
+}
+
+bool PlaceOrder::may_give(std::size_t session, std::uint64_t number) const noexcept {
+  if (session + 1 == sessions_) return number >= next_;
+  const CandidateRun rows = this->session(session);
+  return rows.first < rows.last && number > this->number(rows.last - 1) &&
+         number < begins_[session + 1].number;
+}
+
 std::size_t PlaceOrder::remove(std::size_t row) noexcept {
   straight_ = false;
   const std::size_t slot = slots_[at(row)];

@@ -54,4 +54,10 @@ void RunnerUpHistory::removed(std::size_t row) noexcept {
   }
 }
 
+void RunnerUpHistory::inserted(std::size_t row) noexcept {
+  for (Seen& seen : seen_) {
+    if (seen.row.row >= row) ++seen.row.row;
+  }
+}
+
 }  // namespace seqloop

@@ -87,6 +87,12 @@ class Detector {
   /// Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
+  /// Takes in a place that another robot has saved meanwhile, between two steps.
+  /// @param session of the map; not the one that this detector adds to
+  /// @return as `PlaceMap::add_saved_to`
+  /// Work: as that, and what is remembered of rows. Allocates: never.
+  bool take_in(std::size_t session, const PlaceMap::Saved& place) noexcept;
+
   /// Answers that are not given yet are accepted from this probability on, where the decision is by
   /// probability. @param min_probability above 0 .. 1. Allocates: never.
   void accept_from(float min_probability) noexcept { pending_.accept_from(min_probability); }

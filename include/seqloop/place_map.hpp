@@ -68,6 +68,15 @@ class PlaceMap {
   /// Work: D and the sketch. Allocates: never.
   [[nodiscard]] bool add_saved(const Saved& place) noexcept;
 
+  /// Appends a place that was saved to a session that need not be the newest: what another robot
+  /// has seen meanwhile. A detector at work on the map must take it in itself: `Detector::take_in`.
+  /// @param session that has places, or the newest; another than that only where `FullMap` is not
+  ///   `refuse`: search keeps no room for maps out of order
+  /// @return its row, from which on rows are counted one higher; none as `add_saved` is false
+  /// Work: as `add_saved`, and 2 N bytes moved. Allocates: never.
+  [[nodiscard]] std::optional<std::size_t> add_saved_to(std::size_t session,
+                                                        const Saved& place) noexcept;
+
   /// The next place gets this number, or a higher one if that is its turn: places that went from a
   /// map that was saved do not give theirs to others.
   void count_from(std::uint64_t number) noexcept { order_.count_from(number); }

@@ -38,6 +38,31 @@ std::size_t matches(const FrameReport& report) {
       report.answers, [](const Answer& answer) { return answer.match.has_value(); }));
 }
 
+TEST_F(NoAllocation, WherePlacesOfOthersAreTakenIn) {
+  const oracle::Vectors one = oracle::drive(32, 150, 40, 0.2F);
+  const oracle::Vectors other = oracle::drive(33, 150, 40, 0.2F);
+  MatcherConfig config;
+  config.full_map = FullMap::forget_oldest;
+  const PlaceMap places = map_of(other, config);
+  PlaceMap map(config, {300, 40, 2});
+  Detector detector(config, map);
+  std::vector<std::byte> bytes(map.rows().saved_size());
+  const AllocationGuard guard;
+  for (std::size_t frame = 0; frame < 150; ++frame) {
+    for (const std::size_t session : {0U, 1U}) {
+      if (frame == 0 && session == 1) {
+        map.count_from(1'000);
+        ASSERT_TRUE(map.begin_session());
+      }
+      places.rows().save(frame, bytes);
+      ASSERT_TRUE(detector.take_in(session, {session * 1'000 + frame, frame, bytes}));
+    }
+    static_cast<void>(detector.step(one[frame]));
+  }
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_EQ(map.size(), 300U);
+}
+
 TEST_F(NoAllocation, InAnyStepOfAnyMethodInAnyUse) {
   const oracle::Vectors lap = oracle::drive(31, 150, 40, 0.2F);
   for (const Candidates candidates : {Candidates::all, Candidates::ranges, Candidates::adaptive}) {

@@ -41,6 +41,9 @@ class BeliefTraces {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
   void restart() noexcept { frames_ = 0; }
 
  private:

@@ -73,6 +73,9 @@ class CandidateProposals {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
   /// Forgets everything.
   void restart() noexcept { count_ = 0; }
 

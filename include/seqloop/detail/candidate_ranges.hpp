@@ -53,6 +53,9 @@ class CandidateRanges {
   /// A row went from the map: those behind it are counted one lower. Work: K.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
  private:
   struct ScoredRow {
     double score;

@@ -51,6 +51,9 @@ class LoopDecision {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept { past_.removed(row); }
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept { past_.inserted(row); }
+
   /// Forgets what the frames before saw, but for the runner-up that stands in later.
   void restart() noexcept { past_.restart(); }
 

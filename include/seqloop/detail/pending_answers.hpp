@@ -70,6 +70,9 @@ class PendingAnswers {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
  private:
   /// How much better one line is than another.
   struct Lead {

@@ -50,6 +50,9 @@ class PlaceBelief {
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
   /// Nothing is known of where the robot is; what was learnt of the drive stays.
   void restart() noexcept;
 

@@ -53,6 +53,9 @@ class PlaceOrder {
     return sessions_ < begins_.size() || begins_[sessions_ - 1].row == size_;
   }
 
+  /// Sessions that there is room for.
+  [[nodiscard]] std::size_t most_sessions() const noexcept { return begins_.size(); }
+
   /// Sessions that have been begun, those whose rows have all gone too; 1 or more.
   [[nodiscard]] std::size_t sessions() const noexcept { return sessions_; }
 
@@ -122,6 +125,22 @@ class PlaceOrder {
 
   /// @param number `next_number()` or more
   std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
+
+  /// A new last row of a session that need not be the newest; those behind it are counted anew.
+  /// @param session that has rows @param frame, number above those of its last row; the number
+  /// below
+  ///   that of the next session's first
+  /// @return its slot, as `next_slot` said; not when full
+  /// Work: moves the shorter of the two sides, 4 bytes a row, and looks at each session.
+  /// Allocates: never.
+  std::size_t insert(std::size_t session, std::uint64_t frame, std::uint64_t number) noexcept;
+
+  /// The slot that the next new row gets.
+  [[nodiscard]] std::size_t next_slot() const noexcept { return free_slot_; }
+
+  /// Numbers that a session may give: above those of its rows, below those of the next session.
+  /// @return whether this is one
+  [[nodiscard]] bool may_give(std::size_t session, std::uint64_t number) const noexcept;
 
   /// Takes a row out; a new one comes before another may go.
   /// @return its slot, free for the new one

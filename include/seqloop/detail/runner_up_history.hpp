@@ -48,6 +48,9 @@ class RunnerUpHistory {
   /// A row went from the map: those behind it are counted one lower. Work: ds.
   void removed(std::size_t row) noexcept;
 
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept;
+
   /// Forgets everything.
   void restart() noexcept { remembered_ = 0; }
 

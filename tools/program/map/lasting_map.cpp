@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -38,6 +39,21 @@ class SavedPictures : public PlacePictures {
   std::filesystem::path file_;
 };
 
+/// Opened anew: the file itself belongs to the thread that saves.
+void read_places(const std::filesystem::path& path, const SavedPlaceReader& read) {
+  const sqlite::MapFile file = sqlite::MapFile::read_only(path);
+  std::map<std::int64_t, sqlite::SessionFacts> sessions;
+  for (sqlite::SessionFacts& facts : file.sessions()) sessions[facts.id] = std::move(facts);
+  const auto bytes = static_cast<std::size_t>(file.form().place_bytes);
+  file.read([&](const sqlite::PlaceBlock& block) {
+    const sqlite::SessionFacts& session = sessions.at(block.session);
+    for (std::size_t i = 0; i < block.records.size(); ++i) {
+      read({session.began_ns, session.name, block.records[i].frame, block.records[i].time_ns,
+            block.places.subspan(i * bytes, bytes)});
+    }
+  });
+}
+
 class SqliteMap : public LastingMap {
  public:
   SqliteMap(const MapSettings& settings, const MatcherConfig& config, std::size_t descriptor_size,
@@ -47,6 +63,16 @@ class SqliteMap : public LastingMap {
         encode_(encode) {}
 
   [[nodiscard]] std::size_t places() const noexcept override { return stored_.places(); }
+
+  [[nodiscard]] PlaceForm form() const override { return stored_.form(); }
+
+  [[nodiscard]] std::vector<std::int64_t> begun() const override { return stored_.begun(); }
+
+  void read_saved(const SavedPlaceReader& read) const override {
+    read_places(stored_.path(), read);
+  }
+
+  void when_saved(SavedPlaceReader read) override { when_saved_ = std::move(read); }
 
   [[nodiscard]] Capacity capacity(std::size_t drive) const noexcept override {
     return stored_.capacity(drive);
@@ -61,7 +87,7 @@ class SqliteMap : public LastingMap {
     map_ = &map;
     if (stored_.read_only()) return;
     stored_.begin_session(method);
-    writer_.emplace(stored_, map, config, settings_, encode_);
+    writer_.emplace(stored_, map, config, settings_, encode_, when_saved_);
   }
 
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
@@ -155,6 +181,7 @@ class SqliteMap : public LastingMap {
   StoredMap stored_;
   MapSettings settings_;
   JpegEncoder encode_;
+  SavedPlaceReader when_saved_;
   const PlaceMap* map_ = nullptr;
   std::optional<MapWriter> writer_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -18,6 +19,24 @@
 #include "seqloop/frame.hpp"
 
 namespace seqloop::program {
+
+/// What all places of a map have in common: only such places can be compared.
+struct PlaceForm {
+  std::string form;
+  std::string describer;
+  std::size_t descriptor_size = 0;
+  std::size_t place_bytes = 0;
+};
+
+/// A place that is on the disk.
+struct SavedPlace {
+  std::int64_t began_ns = 0;  ///< when its session began, since 1970
+  std::string_view session;
+  std::uint64_t frame = 0;  ///< of the session
+  std::int64_t time_ns = 0;
+  std::span<const std::byte> bytes{};
+};
+using SavedPlaceReader = std::function<void(const SavedPlace&)>;
 
 /// A map in a file, for one run: loaded before it, saved while it goes.
 class LastingMap {
@@ -37,6 +56,18 @@ class LastingMap {
 
   /// Fills an empty map, with progress. Throws SetupError: damaged.
   virtual void load(PlaceMap& map) = 0;
+
+  [[nodiscard]] virtual PlaceForm form() const = 0;
+
+  /// When each session of the file began.
+  [[nodiscard]] virtual std::vector<std::int64_t> begun() const = 0;
+
+  /// All places of the file, as it is now. Any thread. Throws SetupError.
+  virtual void read_saved(const SavedPlaceReader& read) const = 0;
+
+  /// To be called before `begin`. @param read told of each place of the drive once it is saved, by
+  ///   the thread that saves; does not throw, and does not wait
+  virtual void when_saved(SavedPlaceReader read) = 0;
 
   /// The drive begins: from here on it is saved, unless the map is only read.
   /// @param map the detector's, which lives longer. Throws SetupError.

@@ -32,9 +32,10 @@ std::int64_t nanoseconds(double seconds) {
 }  // namespace
 
 MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
-                     const MapSettings& settings, JpegEncoder encode)
+                     const MapSettings& settings, JpegEncoder encode, SavedPlaceReader when_saved)
     : stored_(&stored),
       map_(&map),
+      when_saved_(std::move(when_saved)),
       settled_after_(config.patience + most_between + config.sequence_length),
       next_number_(map.order().next_number()),
       came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
@@ -293,6 +294,17 @@ void MapWriter::save_once() {
     words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(said));
   }
   saved_frames_.store(frames, std::memory_order_release);
+  tell_saved();
+}
+
+/// Tells who wants to know of the places of the newest batch.
+void MapWriter::tell_saved() const {
+  if (!when_saved_) return;
+  const std::size_t size = map_->rows().saved_size();
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    when_saved_({stored_->begun().back(), stored_->newest_name(), records_[i].frame,
+                 records_[i].time_ns, std::span(bytes_).subspan(i * size, size)});
+  }
 }
 
 std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const Answer> rest) {

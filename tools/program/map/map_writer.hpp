@@ -27,8 +27,9 @@ namespace seqloop::program {
 class MapWriter {
  public:
   /// All of them live longer. @param encode makes thumbnails; null: there are none
+  /// @param when_saved as `LastingMap::when_saved`; empty: nobody is told
   MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
-            const MapSettings& settings, JpegEncoder encode);
+            const MapSettings& settings, JpegEncoder encode, SavedPlaceReader when_saved);
 
   MapWriter(const MapWriter&) = delete;
   MapWriter& operator=(const MapWriter&) = delete;
@@ -110,11 +111,13 @@ class MapWriter {
   bool save();
   void save_once();
   [[nodiscard]] bool left() const;
+  void tell_saved() const;
   void tell(std::string text);
   [[nodiscard]] std::size_t words();
 
   StoredMap* stored_;
   const PlaceMap* map_;
+  SavedPlaceReader when_saved_;
   std::uint64_t settled_after_;  // frames after which a place is linked to no other any more
 
   // Of the loop.

@@ -60,6 +60,7 @@ StoredMap::StoredMap(const MapSettings& settings, const MatcherConfig& config,
       descriptor_size_(descriptor_size) {
   for (const sqlite::SessionFacts& session : file_.sessions()) {
     places_ += static_cast<std::size_t>(session.places);
+    begun_.push_back(session.began_ns);
     if (session.places > 0) names_.push_back(session.name);
     if (!new_name_.empty() && session.name == new_name_) {
       throw SetupError({"session", "the map has one of the name '" + new_name_ + "'",
@@ -131,6 +132,13 @@ void StoredMap::begin_session(const std::string& settings) {
   }
   session_ = file_.begin_session(name, began, settings);
   names_.push_back(name);
+  begun_.push_back(began);
+}
+
+PlaceForm StoredMap::form() const {
+  const sqlite::MapForm& form = file_.form();
+  return {form.form, form.describer, static_cast<std::size_t>(form.descriptor_size),
+          static_cast<std::size_t>(form.place_bytes)};
 }
 
 }  // namespace seqloop::program

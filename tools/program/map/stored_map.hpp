@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "program/map/lasting_map.hpp"
 #include "program/map/map_settings.hpp"
 #include "program/process/progress.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -41,6 +42,11 @@ class StoredMap {
   [[nodiscard]] sqlite::MapFile& file() noexcept { return file_; }
   [[nodiscard]] const sqlite::MapFile& file() const noexcept { return file_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
+  [[nodiscard]] PlaceForm form() const;
+
+  /// When each session of the file began; of this run's, the last.
+  [[nodiscard]] const std::vector<std::int64_t>& begun() const noexcept { return begun_; }
+  [[nodiscard]] const std::string& newest_name() const noexcept { return names_.back(); }
 
   /// The name of a session, as the map counts them: those without places are not counted.
   [[nodiscard]] const std::string& name(std::size_t session) const noexcept {
@@ -54,6 +60,7 @@ class StoredMap {
   std::size_t descriptor_size_;
   std::size_t places_ = 0;
   std::int64_t session_ = 0;
+  std::vector<std::int64_t> begun_;
   std::vector<std::string> names_;  // of the sessions that have places, and of this run's
 };
 

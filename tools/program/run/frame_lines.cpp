@@ -8,11 +8,12 @@ namespace seqloop::program {
 void FrameLines::add(const ProcessedFrame& processed, const LoopState& state) {
   write();
   line_ = frame_json(processed, state);
+  if (more_) more_(*line_);
   if (live_) write();
 }
 
 void FrameLines::end(std::span<const Answer> answers) {
-  if (!line_ && !answers.empty()) {
+  if (!line_ && (!answers.empty() || more_)) {
     ProcessedFrame none;
     none.report.gate = Gate::no_frame;
     line_ = frame_json(none, {});
@@ -21,6 +22,7 @@ void FrameLines::end(std::span<const Answer> answers) {
   } else if (line_) {
     add_answers(*line_, answers);
   }
+  if (line_ && more_) more_(*line_);
   write();
 }
 

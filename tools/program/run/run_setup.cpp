@@ -117,6 +117,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   setup.own_places = settings.reference.empty() && !lasts;
   setup.loops = std::make_unique<LoopOutputs>(settings.loops, setup.own_places, faults);
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  check(settings.fleet, lasts, setup.config.enhance, faults);
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);
   prepare(settings.real_time, faults);
@@ -141,7 +142,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   }
   const bool live_odometry = listens_to_odometry(settings.loops, is_live(settings.source));
   std::function<std::vector<ros::OdometryPose>()> odometry;
-  if (settings.ros || live_odometry || is_topic(settings.source)) {
+  if (settings.ros || live_odometry || is_topic(settings.source) || !settings.fleet.name.empty()) {
     collect(faults, [&] {
       setup.ros = join_ros(settings.real_time);
       if (live_odometry) odometry = open_odometry(settings.loops.odometry, setup.ros);

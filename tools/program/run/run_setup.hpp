@@ -10,6 +10,7 @@
 
 #include "program/drives/drives.hpp"
 #include "program/drives/live_topic.hpp"
+#include "program/fleet/fleet_settings.hpp"
 #include "program/map/lasting_map.hpp"
 #include "program/options/camera_options.hpp"
 #include "program/options/loop_options.hpp"
@@ -41,6 +42,7 @@ struct RunSettings {
   std::size_t max_places = 0;  ///< 0: as many as the drive has
   double give_up_s = 0.0;      ///< 0: never
   MapSettings map;
+  FleetSettings fleet;
   DriveSettings drive;
   CameraSettings camera;
   MatcherSettings matcher;

@@ -13,6 +13,7 @@
 
 #include "program/drives/map_builder.hpp"
 #include "program/drives/warm_up.hpp"
+#include "program/fleet/fleet.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
@@ -136,6 +137,14 @@ void run(const RunSettings& settings, Faults faults) {
   std::vector<float> query(map.rows().restored_size());
   Progress progress("running", setup.frame_count(settings.frames));
   TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
+  std::unique_ptr<Fleet> fleet;
+  if (!settings.fleet.name.empty()) {
+    MatcherConfig config = setup.config;
+    suit_slice(config, settings.matcher, settings.fleet.places);
+    fleet = with_room(setup, [&] {
+      return std::make_unique<Fleet>(settings.fleet, setup.ros, *setup.map, config, map);
+    });
+  }
   // A thread that saves is no part of the loop.
   if (setup.map) setup.map->begin(map, setup.config, settings.matcher.method);
   if (setup.map && serving) serving->keep_in(*setup.map);
@@ -149,7 +158,9 @@ void run(const RunSettings& settings, Faults faults) {
 
   SourceNumbers numbers = with_room(
       setup, [&] { return SourceNumbers(setup.config, setup.own_places ? &map : nullptr); });
-  FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get());
+  FrameLines::More of_others;
+  if (fleet) of_others = [&fleet](nlohmann::ordered_json& frame) { fleet->add_to(frame); };
+  FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get(), of_others);
   std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
@@ -174,6 +185,10 @@ void run(const RunSettings& settings, Faults faults) {
       setup.map->note(detector, processed->report.newest, processed->frame.index,
                       processed->frame.time_s, processed->frame.image, processed->report.answers);
       if (const auto trouble_saving = setup.map->trouble()) progress.tell(*trouble_saving);
+    }
+    if (fleet) {
+      fleet->step(*processed, clock);
+      if (const auto news = fleet->trouble()) progress.tell(*news);
     }
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
@@ -206,6 +221,7 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   const std::span<const Answer> rest = detector.finish();
+  if (fleet) fleet->finish();
   const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
   recorder.add(rest);
   summary.add(rest);
@@ -222,6 +238,11 @@ void run(const RunSettings& settings, Faults faults) {
   // The answers first: a driver that hangs may keep the capture thread from ending.
   if (!unwritten) attempt([&] { lines.end(last); });
   attempt([&] { setup.loops->add(last); });
+  if (fleet) {
+    const std::string told = fleet->end();
+    while (const auto news = fleet->trouble()) say("{}", *news);
+    say("fleet '{}': {}", settings.fleet.name, told);
+  }
   if (const std::uint64_t unsent = ros ? ros->end() : 0; unsent > 0) {
     say("{} messages to ROS 2 were dropped: subscribers, or this machine, were too slow", unsent);
   }
@@ -314,6 +335,7 @@ Verb run_verb() {
   verb.options.count("frames", settings->frames, "stop after this many frames [0: all]");
   add_map_options(verb.options, settings->map);
   add_thumbnail_option(verb.options, settings->map);
+  add_fleet_options(verb.options, settings->fleet);
   verb.options.section("Source");
   add_drive_options(verb.options, settings->drive);
   add_matcher_options(verb.options, settings->matcher);

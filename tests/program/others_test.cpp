@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// What is taken in of what others say; anybody may say anything.
+#include "program/fleet/others.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "program/fleet/place_queue.hpp"
+
+namespace seqloop::program {
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;
+
+dds::FleetSession about(const std::string& robot = "b", const std::string& name = "today") {
+  return {robot, name, "int8 euclidean standardised", "gradients", 4, 4};
+}
+
+/// Says places as a robot does, ten a second.
+class OthersTest : public ::testing::Test {
+ protected:
+  std::optional<std::uint32_t> hear(std::int64_t session, std::uint64_t frame,
+                                    const dds::FleetSession* what = nullptr) {
+    return hear_at(session, frame, static_cast<std::int64_t>(frame) * second / 10, what);
+  }
+  std::optional<std::uint32_t> hear_at(std::int64_t session, std::uint64_t frame,
+                                       std::int64_t time_ns,
+                                       const dds::FleetSession* what = nullptr) {
+    return others_.hear({session, frame, time_ns, bytes_}, what);
+  }
+
+  const dds::FleetSession about_ = about();
+  const std::array<std::byte, 4> bytes_{};
+  Others others_{about("a"), {77, 5}, 100};
+};
+
+TEST_F(OthersTest, SessionsAreCountedAsTheyAreFirstHeard) {
+  const dds::FleetSession other = about("c", "yesterday");
+  EXPECT_EQ(hear(1000, 0), std::nullopt) << "nothing is known of it yet";
+  EXPECT_EQ(hear(1000, 1, &about_), 0U);
+  EXPECT_EQ(hear(2000, 7, &other), 1U);
+  EXPECT_EQ(hear(1000, 2), 0U);
+  EXPECT_EQ(others_.names(1).robot, "c");
+  EXPECT_EQ(others_.names(1).session, "yesterday");
+  EXPECT_EQ(others_.places(), 3U);
+  EXPECT_TRUE(others_.news().empty());
+}
+
+TEST_F(OthersTest, NothingIsCountedTwice) {
+  for (std::uint64_t frame = 0; frame < 10; ++frame) EXPECT_TRUE(hear(1000, frame, &about_));
+  // A restart, a healed partition, or another who has it; under another name.
+  const dds::FleetSession renamed = about("b2");
+  for (std::uint64_t frame = 0; frame < 10; ++frame) EXPECT_FALSE(hear(1000, frame, &renamed));
+  EXPECT_EQ(hear(1000, 10, &renamed), 0U) << "and goes on";
+  // Our own come back.
+  EXPECT_FALSE(hear(77, 0, &about_));
+  EXPECT_FALSE(hear(5, 0, &about_));
+  EXPECT_EQ(others_.places(), 11U);
+  EXPECT_TRUE(others_.news().empty());
+}
+
+TEST_F(OthersTest, WhatCannotBeComparedIsRefusedByNameAndOnce) {
+  dds::FleetSession model = about();
+  model.describer = "model 0123";
+  dds::FleetSession form = about("c");
+  form.form = "sketch euclidean standardised";
+  for (std::uint64_t frame = 0; frame < 3; ++frame) {
+    EXPECT_FALSE(hear(1000, frame, &model));
+    EXPECT_FALSE(hear(2000, frame, &form));
+  }
+  EXPECT_EQ(others_.news(),
+            (std::vector<std::string>{
+                "robot 'b', session 'today': its places are int8 euclidean standardised, of 4 "
+                "values, described by 'model 0123'; these are int8 euclidean standardised, of 4 "
+                "values, described by 'gradients': none is taken in; describe and compare alike on "
+                "both",
+                "robot 'c', session 'today': its places are sketch euclidean standardised, of 4 "
+                "values, described by 'gradients'; these are int8 euclidean standardised, of 4 "
+                "values, described by 'gradients': none is taken in; describe and compare alike on "
+                "both"}));
+  EXPECT_EQ(others_.sessions(), 0U);
+}
+
+TEST_F(OthersTest, OneThatLiesAboutSizesIsNotHeardAnyMore) {
+  EXPECT_TRUE(hear(1000, 0, &about_));
+  const std::vector<std::byte> large(1 << 20);
+  EXPECT_FALSE(others_.hear({1000, 1, second, large}, nullptr));
+  EXPECT_FALSE(hear(1000, 2));
+  EXPECT_EQ(others_.news(),
+            (std::vector<std::string>{"robot 'b', session 'today': it says 4 bytes a place, and "
+                                      "sends 1048576: no more of it is taken in"}));
+}
+
+TEST_F(OthersTest, OneWhoseTimeGoesBackIsNotHeardAnyMore) {
+  EXPECT_TRUE(hear_at(1000, 0, INT64_MIN, &about_));
+  EXPECT_TRUE(hear_at(1000, 1, INT64_MAX));
+  EXPECT_FALSE(hear_at(1000, 2, 0));
+  EXPECT_FALSE(hear_at(1000, 3, INT64_MAX));
+  EXPECT_EQ(others_.news(), (std::vector<std::string>{"robot 'b', session 'today': its time goes "
+                                                      "back: no more of it is taken in"}));
+}
+
+TEST_F(OthersTest, AFloodIsBoundedByTheRoomAndByTheDrivesOwnTime) {
+  Others others(about("a"), {}, 10'000);
+  const dds::FleetSession what = about();
+  std::size_t taken = 0;
+  for (std::uint64_t frame = 0; frame < 9'000; ++frame) {
+    taken += others.hear({1000, frame, 0, bytes_}, &what).has_value();
+  }
+  EXPECT_EQ(taken, 2'000U) << "of a drive of no time";
+  EXPECT_EQ(others.news(),
+            (std::vector<std::string>{"robot 'b', session 'today': it has more than 1000 places a "
+                                      "second of its drive: no more of it is taken in"}));
+  for (std::uint64_t frame = 0; frame < 9'000; ++frame) {
+    const auto time_ns = static_cast<std::int64_t>(frame) * second / 30;
+    taken += others.hear({2000, frame, time_ns, bytes_}, &what).has_value();
+  }
+  EXPECT_EQ(taken, 10'000U);
+  EXPECT_EQ(others.news(),
+            (std::vector<std::string>{"there is room for 10000 places of other robots, and more "
+                                      "have come; raise --fleet-places"}));
+}
+
+TEST_F(OthersTest, SessionsWithoutEndAreBounded) {
+  for (std::int64_t session = 0; session < 5'000; ++session) {
+    static_cast<void>(hear(1'000'000 + session, 0, &about_));
+  }
+  EXPECT_EQ(others_.places(), 100U);
+  const std::vector<std::string> news = others_.news();
+  ASSERT_EQ(news.size(), 2U);
+  EXPECT_EQ(news[1], "other robots have more than 1024 sessions: what is beyond is not heard");
+}
+
+TEST_F(OthersTest, NamesAreFitToBePrinted) {
+  const dds::FleetSession evil = about("\x1b[2J\xff" + std::string(100'000, 'x'), "");
+  EXPECT_TRUE(hear(1000, 0, &evil));
+  EXPECT_LT(others_.names(0).robot.size(), 200U);
+  EXPECT_EQ(others_.names(0).robot.substr(0, 11), "\\x1B[2J\\xFF");
+  EXPECT_EQ(others_.names(0).session, "without a name");
+}
+
+TEST(PlaceQueue, GivesBackWhatWasPutInInOrder) {
+  PlaceQueue queue(3, 2);
+  std::uint64_t next = 0;
+  std::uint64_t taken = 0;
+  for (int round = 0; round < 10; ++round) {
+    while (!queue.full()) {
+      const std::array<std::byte, 2> bytes{static_cast<std::byte>(next), std::byte{9}};
+      queue.push({static_cast<std::uint32_t>(next % 5), next, bytes});
+      ++next;
+    }
+    for (int i = 0; i < 2; ++i, ++taken, queue.pop()) {
+      const PlaceQueue::Place* const place = queue.front();
+      ASSERT_NE(place, nullptr);
+      EXPECT_EQ(place->frame, taken);
+      EXPECT_EQ(place->session, taken % 5);
+      EXPECT_EQ(place->bytes[0], static_cast<std::byte>(taken));
+    }
+  }
+  queue.pop();
+  EXPECT_EQ(queue.front(), nullptr);
+}
+
+}  // namespace
+}  // namespace seqloop::program

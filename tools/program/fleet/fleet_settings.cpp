@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "program/fleet/fleet_settings.hpp"
+
+#include <unistd.h>
+
+#include <array>
+
+namespace seqloop::program {
+
+void add_fleet_options(OptionTable& options, FleetSettings& settings) {
+  options.section("Map");
+  options.text("fleet", settings.name,
+               "tell the robots of this fleet the places that are saved, over DDS, and find loops "
+               "with theirs; with --map [alone]");
+  options.section("Map", Shown::in_help_all);
+  options.count("fleet-places", settings.places,
+                "room for places of other robots, beside --max-places [20000]");
+  options.text("robot", settings.robot, "this robot's name among others [the machine's]");
+}
+
+void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults) {
+  if (settings.name.empty()) {
+    if (!settings.robot.empty()) faults.push_back({"robot", "there are no others", "--fleet NAME"});
+    return;
+  }
+  if (!map) faults.push_back({"fleet", "places are told as they are saved", "add --map FILE"});
+  if (enhance) {
+    faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
+                      "leave one of them out"});
+  }
+  if (settings.places == 0 || settings.places > most_fleet_places) {
+    faults.push_back({"fleet-places", "it must be 1 to " + std::to_string(most_fleet_places)});
+  }
+}
+
+std::string robot_name(const FleetSettings& settings) {
+  if (!settings.robot.empty()) return settings.robot;
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name.front() == '\0') return "robot";
+  return name.data();
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "program/fleet/fleet_talk.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "program/watch/background.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto round_time = 20ms;
+constexpr auto patience_at_end = 1s;
+
+// Places that wait for the loop; it takes 64 a frame.
+constexpr std::size_t queued = 1024;
+
+// What all places of a session have in common is said with its first place, and again with every
+// so many: who hears the newest ones alone learns it, too.
+constexpr std::uint64_t said_every = 64;
+
+// Lines for a person that nobody has read yet.
+constexpr std::size_t most_news = 64;
+
+dds::FleetSession about_of(const FleetSettings& settings, const PlaceForm& form) {
+  return {robot_name(settings),
+          {},
+          form.form,
+          form.describer,
+          static_cast<std::uint32_t>(form.descriptor_size),
+          static_cast<std::uint32_t>(form.place_bytes)};
+}
+
+/// Thrown to stop reading a file.
+struct Ending : std::exception {};
+
+}  // namespace
+
+FleetTalk::FleetTalk(const FleetSettings& settings, const dds::Participant& participant,
+                     LastingMap& map)
+    : map_(&map),
+      saved_(std::make_shared<Saved>(settings.places)),
+      about_(about_of(settings, map.form())),
+      earlier_(map.begun()),
+      wire_(participant, settings.name, settings.places),
+      others_(about_, earlier_, settings.places),
+      heard_(queued, map.form().place_bytes),
+      thread_([this] { work(); }) {
+  map.when_saved([saved = saved_](const SavedPlace& place) { saved->keep(place); });
+}
+
+FleetTalk::~FleetTalk() { end(); }
+
+void FleetTalk::end() {
+  ending_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+/// The saving thread's side.
+void FleetTalk::Saved::keep(const SavedPlace& place) {
+  const std::scoped_lock lock(mutex);
+  if (waiting.size() == room) {
+    waiting.pop_front();
+    ++untold;
+  }
+  session = place.session;
+  waiting.push_back(
+      {place.began_ns, place.frame, place.time_ns, {place.bytes.begin(), place.bytes.end()}});
+}
+
+void FleetTalk::work() {
+  become_background();
+  try {
+    tell_earlier();
+  } catch (const Ending&) {
+  } catch (const std::exception& error) {
+    pass_on(std::string("earlier sessions are not told to other robots: ") + error.what());
+  }
+  while (!ending_) {
+    tell_newest();
+    hear();
+    wire_.wait(round_time);
+  }
+  const auto until = std::chrono::steady_clock::now() + patience_at_end;
+  while (std::chrono::steady_clock::now() < until) {
+    tell_newest();
+    const std::scoped_lock lock(saved_->mutex);
+    if (saved_->waiting.empty()) break;
+  }
+  const auto left = until - std::chrono::steady_clock::now();
+  if (left > 0s && wire_.others() > 0) wire_.flush(left);
+}
+
+/// Of the sessions that the file had before this run.
+void FleetTalk::tell_earlier() {
+  map_->read_saved([this](const SavedPlace& place) {
+    if (std::ranges::find(earlier_, place.began_ns) == earlier_.end()) return;
+    while (!tell({place.began_ns, place.frame, place.time_ns, place.bytes},
+                 std::string(place.session))) {
+      if (ending_) throw Ending();
+      hear();
+    }
+    if (told_ % said_every == 0) hear();
+  });
+}
+
+void FleetTalk::tell_newest() {
+  while (true) {
+    Waiting place;
+    std::string name;
+    {
+      const std::scoped_lock lock(saved_->mutex);
+      if (saved_->waiting.empty()) return;
+      place = std::move(saved_->waiting.front());
+      saved_->waiting.pop_front();
+      name = saved_->session;
+    }
+    if (!tell({place.session, place.frame, place.time_ns, place.bytes}, name)) {
+      const std::scoped_lock lock(saved_->mutex);
+      saved_->waiting.push_front(std::move(place));
+      return;
+    }
+  }
+}
+
+/// @return false where others are too slow
+bool FleetTalk::tell(const dds::FleetPlace& place, const std::string& session) {
+  if (std::exchange(session_, place.session) != place.session) of_session_ = 0;
+  about_.name = session;
+  if (!wire_.publish(place, of_session_ % said_every == 0 ? &about_ : nullptr)) return false;
+  ++told_;
+  ++of_session_;
+  return true;
+}
+
+/// Hears as much as the loop has room for; the rest waits in DDS.
+void FleetTalk::hear() {
+  const auto take = [this](const dds::FleetPlace& place, const dds::FleetSession* about) {
+    if (const auto session = others_.hear(place, about)) {
+      heard_.push({*session, place.frame, place.bytes});
+    }
+  };
+  while (!heard_.full() && wire_.take(take)) {
+  }
+  for (std::string& line : others_.news()) pass_on(std::move(line));
+}
+
+void FleetTalk::pass_on(std::string line) {
+  const std::scoped_lock lock(mutex_);
+  if (news_.size() < most_news) news_.push_back(std::move(line));
+  has_news_.store(true, std::memory_order_release);
+}
+
+std::optional<std::string> FleetTalk::news() {
+  if (!has_news_.load(std::memory_order_acquire)) return std::nullopt;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || news_.empty()) return std::nullopt;
+  std::string line = std::move(news_.front());
+  news_.pop_front();
+  has_news_.store(!news_.empty(), std::memory_order_relaxed);
+  return line;
+}
+
+FleetTalk::Counts FleetTalk::counts() {
+  const std::scoped_lock lock(saved_->mutex);
+  return {told_, saved_->untold + saved_->waiting.size(), others_.places(), others_.sessions()};
+}
+
+}  // namespace seqloop::program

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program/fleet/fleet_settings.hpp"
+#include "program/fleet/others.hpp"
+#include "program/fleet/place_queue.hpp"
+#include "program/map/lasting_map.hpp"
+#include "seqloop/dds/fleet.hpp"
+
+namespace seqloop::program {
+
+/// What a robot tells others and hears of them, in a thread of its own: neither the loop nor the
+/// disk waits for the network.
+class FleetTalk {
+ public:
+  /// All of them live longer; the map has not begun yet. Throws SetupError.
+  FleetTalk(const FleetSettings& settings, const dds::Participant& participant, LastingMap& map);
+  FleetTalk(const FleetTalk&) = delete;
+  FleetTalk& operator=(const FleetTalk&) = delete;
+  FleetTalk(FleetTalk&&) = delete;
+  FleetTalk& operator=(FleetTalk&&) = delete;
+  ~FleetTalk();
+
+  /// The loop's side: what has been heard, in order.
+  [[nodiscard]] PlaceQueue& heard() noexcept { return heard_; }
+
+  /// Names of a session of which a place has been heard.
+  [[nodiscard]] const Others::Names& names(std::uint32_t session) const {
+    return others_.names(session);
+  }
+
+  /// One line of what there is to say of others. Never waits.
+  [[nodiscard]] std::optional<std::string> news();
+
+  /// Tells the rest, for a second at most.
+  void end();
+
+  struct Counts {
+    std::uint64_t told = 0;      ///< places, and again those of earlier sessions
+    std::uint64_t untold = 0;    ///< places that there was no room for: the network is too slow
+    std::uint64_t heard = 0;     ///< places that were taken in
+    std::uint64_t sessions = 0;  ///< that they are of
+  };
+  /// After `end`.
+  [[nodiscard]] Counts counts();
+
+ private:
+  /// A place that waits to be told.
+  struct Waiting {
+    std::int64_t session = 0;
+    std::uint64_t frame = 0;
+    std::int64_t time_ns = 0;
+    std::vector<std::byte> bytes;
+  };
+  /// What was saved; the thread that saves may outlive this object.
+  struct Saved {
+    explicit Saved(std::size_t places) : room(places) {}
+    void keep(const SavedPlace& place);
+
+    const std::size_t room;
+    std::mutex mutex;
+    std::deque<Waiting> waiting;
+    std::string session;  // the running one's name
+    std::uint64_t untold = 0;
+  };
+
+  void work();
+  void tell_earlier();
+  void tell_newest();
+  bool tell(const dds::FleetPlace& place, const std::string& session);
+  void hear();
+  void pass_on(std::string line);
+
+  LastingMap* map_;
+  std::shared_ptr<Saved> saved_;
+  dds::FleetSession about_;
+  std::vector<std::int64_t> earlier_;
+  dds::Fleet wire_;
+  Others others_;
+  PlaceQueue heard_;
+
+  std::uint64_t told_ = 0;        // the thread's
+  std::uint64_t of_session_ = 0;  // told of the session that was told of last
+  std::int64_t session_ = 0;
+
+  std::mutex mutex_;
+  std::deque<std::string> news_;  // under the mutex
+  std::atomic<bool> has_news_{false};
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace seqloop::program

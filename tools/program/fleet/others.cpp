@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "program/fleet/others.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "program/process/say.hpp"
+
+namespace seqloop::program {
+namespace {
+
+// No camera sees more; what is told faster is no drive.
+constexpr std::uint64_t most_a_second = 1000;
+
+// A name is for people.
+constexpr std::size_t longest_name = 100;
+
+std::string name_of(const std::string& text, const char* otherwise) {
+  if (text.empty()) return otherwise;
+  return printable(std::string_view(text).substr(0, longest_name));
+}
+
+std::string form_of(const dds::FleetSession& session) {
+  return fmt::format("{}, of {} values, described by '{}'", name_of(session.form, "nothing"),
+                     session.descriptor_size, name_of(session.describer, "nothing"));
+}
+
+bool alike(const dds::FleetSession& one, const dds::FleetSession& other) {
+  return one.form == other.form && one.describer == other.describer &&
+         one.descriptor_size == other.descriptor_size && one.place_bytes == other.place_bytes;
+}
+
+std::string title(const Others::Names& names) {
+  return fmt::format("robot '{}', session '{}'", names.robot, names.session);
+}
+
+}  // namespace
+
+Others::Others(dds::FleetSession own, std::vector<std::int64_t> in_map, std::size_t places)
+    : own_(std::move(own)), in_map_(std::move(in_map)), room_(places) {
+  std::ranges::sort(in_map_);
+  names_.reserve(most_sessions);
+}
+
+std::optional<std::uint32_t> Others::hear(const dds::FleetPlace& place,
+                                          const dds::FleetSession* about) {
+  if (std::ranges::binary_search(in_map_, place.session)) return std::nullopt;
+  Session* const session = known(place, about);
+  if (session == nullptr || session->refused) return std::nullopt;
+  // From several who have it, or again after a restart.
+  if (session->places > 0 && place.frame <= session->frame) return std::nullopt;
+  if (const auto why = fault(*session, place)) {
+    session->refused = true;
+    tell(fmt::format("{}: {}: no more of it is taken in", title(session->names), *why));
+    return std::nullopt;
+  }
+  if (taken_ == room_) {
+    if (!std::exchange(full_, true)) {
+      tell(
+          fmt::format("there is room for {} places of other robots, and more have come; raise "
+                      "--fleet-places",
+                      room_));
+    }
+    return std::nullopt;
+  }
+  if (session->places == 0) session->first_ns = place.time_ns;
+  session->frame = place.frame;
+  session->newest_ns = place.time_ns;
+  ++session->places;
+  ++taken_;
+  if (!session->index) {
+    session->index = static_cast<std::uint32_t>(names_.size());
+    names_.push_back(session->names);
+  }
+  return session->index;
+}
+
+/// @return null where nothing is known of the session, and nothing is to be
+Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSession* about) {
+  const auto found = sessions_.find(place.session);
+  if (found != sessions_.end()) return &found->second;
+  if (about == nullptr) return nullptr;
+  if (sessions_.size() == most_sessions) {
+    if (!std::exchange(crowded_, true)) {
+      tell(fmt::format("other robots have more than {} sessions: what is beyond is not heard",
+                       most_sessions));
+    }
+    return nullptr;
+  }
+  Session session;
+  session.names = {name_of(about->robot, "without a name"), name_of(about->name, "without a name")};
+  session.refused = !alike(*about, own_);
+  if (session.refused) {
+    tell(
+        fmt::format("{}: its places are {}; these are {}: none is taken in; describe and compare "
+                    "alike on both",
+                    title(session.names), form_of(*about), form_of(own_)));
+  }
+  return &sessions_.emplace(place.session, std::move(session)).first->second;
+}
+
+/// @return why nothing more is to be heard of a session
+std::optional<std::string> Others::fault(const Session& session,
+                                         const dds::FleetPlace& place) const {
+  if (place.bytes.size() != own_.place_bytes) {
+    return fmt::format("it says {} bytes a place, and sends {}", own_.place_bytes,
+                       place.bytes.size());
+  }
+  if (session.places == 0) return std::nullopt;
+  if (place.time_ns < session.newest_ns) return "its time goes back";
+  // Unsigned: from the least time to the greatest, too.
+  const std::uint64_t driven_ns =
+      static_cast<std::uint64_t>(place.time_ns) - static_cast<std::uint64_t>(session.first_ns);
+  constexpr std::uint64_t a_second = 1'000'000'000;
+  if (session.places / most_a_second > driven_ns / a_second + 1) {
+    return fmt::format("it has more than {} places a second of its drive", most_a_second);
+  }
+  return std::nullopt;
+}
+
+void Others::tell(std::string text) { news_.push_back(std::move(text)); }
+
+std::vector<std::string> Others::news() { return std::exchange(news_, {}); }
+
+}  // namespace seqloop::program

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "seqloop/dds/fleet.hpp"
+
+namespace seqloop::program {
+
+/// Decides what is taken in of what others say, and says what is not. Anybody on the network may
+/// say anything: memory is bounded, and one that does not keep to the rules is named once and not
+/// heard any more. For one thread.
+class Others {
+ public:
+  /// Sessions that are known at a time, those that are not heard included.
+  static constexpr std::size_t most_sessions = 1024;
+
+  /// @param own what all places must be like
+  /// @param in_map sessions that the map has already: they come back from who has heard them
+  /// @param places that there is room for
+  Others(dds::FleetSession own, std::vector<std::int64_t> in_map, std::size_t places);
+
+  /// @param about nothing is said of the session: null
+  /// @return of a place that is to be taken in, its session: counted from 0 as they are first heard
+  [[nodiscard]] std::optional<std::uint32_t> hear(const dds::FleetPlace& place,
+                                                  const dds::FleetSession* about);
+
+  /// Names that a session came with, fit to be printed.
+  struct Names {
+    std::string robot;
+    std::string session;
+  };
+  [[nodiscard]] const Names& names(std::uint32_t session) const { return names_[session]; }
+
+  /// What a person should know, one line each, once.
+  [[nodiscard]] std::vector<std::string> news();
+
+  [[nodiscard]] std::size_t sessions() const noexcept { return names_.size(); }
+  [[nodiscard]] std::uint64_t places() const noexcept { return taken_; }
+
+ private:
+  struct Session {
+    Names names;
+    std::optional<std::uint32_t> index;  // once something was taken in
+    bool refused = false;
+    std::uint64_t places = 0;
+    std::uint64_t frame = 0;    // of the last place
+    std::int64_t first_ns = 0;  // of its drive
+    std::int64_t newest_ns = 0;
+  };
+
+  [[nodiscard]] Session* known(const dds::FleetPlace& place, const dds::FleetSession* about);
+  [[nodiscard]] std::optional<std::string> fault(const Session& session,
+                                                 const dds::FleetPlace& place) const;
+  void tell(std::string text);
+
+  dds::FleetSession own_;
+  std::vector<std::int64_t> in_map_;
+  std::size_t room_;
+  std::map<std::int64_t, Session> sessions_;
+  std::vector<Names> names_;  // never moves: room for all is there
+  std::uint64_t taken_ = 0;
+  bool full_ = false;
+  bool crowded_ = false;
+  std::vector<std::string> news_;
+};
+
+}  // namespace seqloop::program
