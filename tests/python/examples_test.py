@@ -49,11 +49,11 @@ class Protocol(unittest.TestCase):
             self.skipTest("no DRIVES")
         said = run("vpr_protocol.py", DRIVES / "day_left", DRIVES / "night_right")
         print(said)
-        recall = {name: float(value) for name, value in re.findall(r"^(.*?)  +(0\.\d+)", said, re.MULTILINE)}
+        recall = {name: float(value) for name, value in re.findall(r"^(.*?)  +([01]\.\d+)", said, re.MULTILINE)}
         self.assertGreater(recall["our descriptor, our matcher"], .95)
         self.assertGreater(recall["another descriptor, our matcher"], .9)
         self.assertLess(recall["our descriptor, dot product"], .5)
-        self.assertRegex(said, r"accepted: 19\d of 200 frames, precision 1.000")
+        self.assertRegex(said, r"accepted: (19\d|200) of 200 frames, precision 1.000")
 
 
 class Look(unittest.TestCase):
