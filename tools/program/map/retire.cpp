@@ -32,11 +32,12 @@ std::vector<Stretch> stretches(const StoredMap& stored, const PlaceMap& map,
   const PlaceOrder& order = map.order();
   std::vector<Stretch> all;
   for (std::size_t session = 0; session < order.sessions(); ++session) {
-    const auto [first, end] = order.session(session);
-    const std::size_t parts = std::max<std::size_t>(1, (end - first) / stretch_places);
+    const CandidateRun rows = order.session(session);
+    const std::size_t size = rows.last - rows.first;
+    const std::size_t parts = std::max<std::size_t>(1, size / stretch_places);
     for (std::size_t part = 0; part < parts; ++part) {
       Stretch& stretch = all.emplace_back(Stretch{session, {}});
-      const auto border = [&](std::size_t at) { return first + (end - first) * at / parts; };
+      const auto border = [&](std::size_t at) { return rows.first + size * at / parts; };
       for (std::size_t row = border(part); row < border(part + 1); ++row) {
         const std::uint64_t other = linked[order.slot(row)];
         Sighting place{order.number(row), other != none ? other : map.first_visit(row)};
