@@ -20,8 +20,9 @@ constexpr std::int32_t most_sessions = 4096;
 
 Qos places_qos(std::size_t kept) {
   constexpr dds_duration_t patience = DDS_MSECS(100);
+  // Of each place, what it is a visit of may be told, too.
   const auto depth = static_cast<std::int32_t>(
-      std::min<std::size_t>(kept, std::numeric_limits<std::int32_t>::max()));
+      std::min<std::size_t>(2 * kept, std::numeric_limits<std::int32_t>::max()));
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, patience);
   dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
@@ -84,6 +85,12 @@ class Fleet::Impl {
       sample.about._length = sample.about._maximum = 1;
       sample.about._buffer = &about;
     }
+    seqloop_fleet_Visit visit{};
+    if (place.visit) {
+      visit = {place.visit->session, place.visit->frame};
+      sample.visit._length = sample.visit._maximum = 1;
+      sample.visit._buffer = &visit;
+    }
     const auto size = static_cast<std::uint32_t>(place.bytes.size());
     sample.bytes._length = sample.bytes._maximum = size;
     sample.bytes._buffer = const_cast<std::uint8_t*>(
@@ -107,9 +114,15 @@ class Fleet::Impl {
       const std::unique_ptr<void*, decltype(give_back)> loan(&sample, give_back);
       if (!info.valid_data) continue;  // a robot that has gone
       const auto& place = *static_cast<const seqloop_fleet_Place*>(sample);
-      const FleetPlace heard{
-          place.session, place.frame, place.time_ns,
-          std::as_bytes(std::span(place.bytes._buffer, std::size_t{place.bytes._length}))};
+      FleetPlace heard{
+          place.session,
+          place.frame,
+          place.time_ns,
+          std::as_bytes(std::span(place.bytes._buffer, std::size_t{place.bytes._length})),
+          {}};
+      if (place.visit._length == 1) {
+        heard.visit = {place.visit._buffer[0].session, place.visit._buffer[0].frame};
+      }
       if (place.about._length == 0) {
         hear(heard, nullptr);
         return true;

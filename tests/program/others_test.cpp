@@ -29,7 +29,7 @@ class OthersTest : public ::testing::Test {
   std::optional<std::uint32_t> hear_at(std::int64_t session, std::uint64_t frame,
                                        std::int64_t time_ns,
                                        const dds::FleetSession* what = nullptr) {
-    return others_.hear({session, frame, time_ns, bytes_}, what);
+    return others_.hear({session, frame, time_ns, bytes_, {}}, what);
   }
 
   const dds::FleetSession about_ = about();
@@ -87,7 +87,7 @@ TEST_F(OthersTest, WhatCannotBeComparedIsRefusedByNameAndOnce) {
 TEST_F(OthersTest, OneThatLiesAboutSizesIsNotHeardAnyMore) {
   EXPECT_TRUE(hear(1000, 0, &about_));
   const std::vector<std::byte> large(1 << 20);
-  EXPECT_FALSE(others_.hear({1000, 1, second, large}, nullptr));
+  EXPECT_FALSE(others_.hear({1000, 1, second, large, {}}, nullptr));
   EXPECT_FALSE(hear(1000, 2));
   EXPECT_EQ(others_.news(),
             (std::vector<std::string>{"robot 'b', session 'today': it says 4 bytes a place, and "
@@ -108,7 +108,7 @@ TEST_F(OthersTest, AFloodIsBoundedByTheRoomAndByTheDrivesOwnTime) {
   const dds::FleetSession what = about();
   std::size_t taken = 0;
   for (std::uint64_t frame = 0; frame < 9'000; ++frame) {
-    taken += others.hear({1000, frame, 0, bytes_}, &what).has_value();
+    taken += others.hear({1000, frame, 0, bytes_, {}}, &what).has_value();
   }
   EXPECT_EQ(taken, 2'000U) << "of a drive of no time";
   EXPECT_EQ(others.news(),
@@ -116,12 +116,32 @@ TEST_F(OthersTest, AFloodIsBoundedByTheRoomAndByTheDrivesOwnTime) {
                                       "second of its drive: no more of it is taken in"}));
   for (std::uint64_t frame = 0; frame < 9'000; ++frame) {
     const auto time_ns = static_cast<std::int64_t>(frame) * second / 30;
-    taken += others.hear({2000, frame, time_ns, bytes_}, &what).has_value();
+    taken += others.hear({2000, frame, time_ns, bytes_, {}}, &what).has_value();
   }
   EXPECT_EQ(taken, 10'000U);
   EXPECT_EQ(others.news(),
             (std::vector<std::string>{"there is room for 10000 places of other robots, and more "
                                       "have come; raise --fleet-places"}));
+}
+
+TEST_F(OthersTest, VisitsAreOfPlacesThatWereTakenIn) {
+  const dds::FleetSession other = about("c");
+  for (std::uint64_t frame = 0; frame < 10; ++frame) {
+    EXPECT_EQ(hear(1000, frame, &about_), 0U);
+    EXPECT_EQ(hear(2000, frame, &other), 1U);
+  }
+  const auto same = [&](std::int64_t session, std::uint64_t frame, std::int64_t visited,
+                        std::uint64_t then) {
+    return others_.same_place({session, frame, 0, {}, {{visited, then}}});
+  };
+  ASSERT_TRUE(same(2000, 9, 1000, 9));
+  EXPECT_EQ(same(2000, 9, 1000, 9)->session, 1U);
+  EXPECT_EQ(same(2000, 9, 1000, 9)->visited, 0U);
+  EXPECT_TRUE(same(1000, 5, 1000, 2));
+  EXPECT_FALSE(same(1000, 10, 1000, 2));
+  EXPECT_FALSE(same(1000, 5, 1000, 10));
+  EXPECT_FALSE(same(3000, 0, 1000, 0));
+  EXPECT_FALSE(same(1000, 0, 77, 0)) << "ours";
 }
 
 TEST_F(OthersTest, SessionsWithoutEndAreBounded) {
@@ -149,7 +169,7 @@ TEST(PlaceQueue, GivesBackWhatWasPutInInOrder) {
   for (int round = 0; round < 10; ++round) {
     while (!queue.full()) {
       const std::array<std::byte, 2> bytes{static_cast<std::byte>(next), std::byte{9}};
-      queue.push({static_cast<std::uint32_t>(next % 5), next, bytes});
+      queue.push({static_cast<std::uint32_t>(next % 5), next, bytes, {}});
       ++next;
     }
     for (int i = 0; i < 2; ++i, ++taken, queue.pop()) {

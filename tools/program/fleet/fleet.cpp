@@ -5,6 +5,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -59,12 +60,12 @@ class Fleet::Impl {
     const Nanoseconds took = clock.now() - before;
     processed.times.match += took;
     processed.times.total += took;
-    for (const Answer& answer : answers_) loops_ += answer.gate == Gate::match ? 1U : 0U;
+    for (const Answer& answer : answers_) note(answer);
   }
 
   void finish() noexcept {
     answers_ = numbers_.rename(detector_.finish());
-    for (const Answer& answer : answers_) loops_ += answer.gate == Gate::match ? 1U : 0U;
+    for (const Answer& answer : answers_) note(answer);
   }
 
   void add_to(nlohmann::ordered_json& frame) const {
@@ -119,7 +120,11 @@ class Fleet::Impl {
     for (std::size_t i = 0; i < most_a_frame; ++i) {
       const PlaceQueue::Place* const place = talk_.heard().front();
       if (place == nullptr) return;
-      if (!take_in(*place)) ++refused_;
+      if (place->visited) {
+        link(*place);
+      } else if (!take_in(*place)) {
+        ++refused_;
+      }
       talk_.heard().pop();
     }
   }
@@ -140,6 +145,42 @@ class Fleet::Impl {
       heard_of_[used_++] = place.session;
     }
     return true;
+  }
+
+  void note(const Answer& answer) noexcept {
+    if (answer.gate == Gate::match) ++loops_;
+    // As within a map, for later frames of all.
+    constexpr float likely = 0.9F;
+    if (!answer.match || !(answer.probability >= likely)) return;
+    const PlaceOrder& order = map_.order();
+    const auto row = order.row_of_number(answer.match->place);
+    if (!row) return;
+    talk_.found({answer.frame, heard_of_[order.session_of(*row)], order.frame(*row)});
+  }
+
+  /// The row of a frame of a session. Work: log N.
+  [[nodiscard]] std::optional<std::size_t> row_of(std::uint32_t session,
+                                                  std::uint64_t frame) const noexcept {
+    if (begun_[session] == none) return std::nullopt;
+    CandidateRun rows = map_.order().session(begun_[session]);
+    const std::size_t end = rows.last;
+    while (rows.first < rows.last) {
+      const std::size_t middle = rows.first + (rows.last - rows.first) / 2;
+      if (map_.order().frame(middle) < frame) {
+        rows.first = middle + 1;
+      } else {
+        rows.last = middle;
+      }
+    }
+    if (rows.first == end || map_.order().frame(rows.first) != frame) return std::nullopt;
+    return rows.first;
+  }
+
+  /// Two rows are one place, and do not compete.
+  void link(const PlaceQueue::Place& place) noexcept {
+    const auto row = row_of(place.session, place.frame);
+    const auto visited = row_of(place.visited->session, place.visited->frame);
+    if (row && visited) map_.set_first_visit(*row, map_.first_visit(*visited));
   }
 
   std::shared_ptr<dds::Participant> participant_;

@@ -68,8 +68,9 @@ void FleetTalk::Saved::keep(const SavedPlace& place) {
     ++untold;
   }
   session = place.session;
-  waiting.push_back(
-      {place.began_ns, place.frame, place.time_ns, {place.bytes.begin(), place.bytes.end()}});
+  waiting.push_back({place, {place.bytes.begin(), place.bytes.end()}});
+  waiting.back().place.session = {};
+  waiting.back().place.bytes = {};
 }
 
 void FleetTalk::work() {
@@ -82,6 +83,7 @@ void FleetTalk::work() {
   }
   while (!ending_) {
     tell_newest();
+    tell_found();
     hear();
     wire_.wait(round_time);
   }
@@ -99,8 +101,7 @@ void FleetTalk::work() {
 void FleetTalk::tell_earlier() {
   map_->read_saved([this](const SavedPlace& place) {
     if (std::ranges::find(earlier_, place.began_ns) == earlier_.end()) return;
-    while (!tell({place.began_ns, place.frame, place.time_ns, place.bytes},
-                 std::string(place.session))) {
+    while (!tell(place, std::string(place.session))) {
       if (ending_) throw Ending();
       hear();
     }
@@ -119,19 +120,42 @@ void FleetTalk::tell_newest() {
       saved_->waiting.pop_front();
       name = saved_->session;
     }
-    if (!tell({place.session, place.frame, place.time_ns, place.bytes}, name)) {
+    SavedPlace whole = place.place;
+    whole.bytes = place.bytes;
+    if (!tell(whole, name)) {
       const std::scoped_lock lock(saved_->mutex);
       saved_->waiting.push_front(std::move(place));
       return;
     }
+    if (!whole.visits) newest_told_ = {whole.began_ns, whole.frame};
+  }
+}
+
+/// Places of this drive that are places of others, once they are told themselves.
+void FleetTalk::tell_found() {
+  while (const Found* const found = found_.front()) {
+    if (!newest_told_ || found->frame > newest_told_->frame) return;
+    const dds::FleetVisit visited{others_.names(found->session).began_ns, found->session_frame};
+    if (!wire_.publish({newest_told_->session, found->frame, 0, {}, visited}, nullptr)) return;
+    found_.pop();
   }
 }
 
 /// @return false where others are too slow
-bool FleetTalk::tell(const dds::FleetPlace& place, const std::string& session) {
-  if (std::exchange(session_, place.session) != place.session) of_session_ = 0;
+bool FleetTalk::tell(const SavedPlace& place, const std::string& session) {
+  if (place.visits) {
+    const auto visited = told_as_.find(*place.visits);
+    // What has gone from the map was not told.
+    if (visited == told_as_.end()) return true;
+    return wire_.publish({place.began_ns, place.frame, 0, {}, visited->second}, nullptr);
+  }
+  if (std::exchange(session_, place.began_ns) != place.began_ns) of_session_ = 0;
   about_.name = session;
-  if (!wire_.publish(place, of_session_ % said_every == 0 ? &about_ : nullptr)) return false;
+  if (!wire_.publish({place.began_ns, place.frame, place.time_ns, place.bytes, {}},
+                     of_session_ % said_every == 0 ? &about_ : nullptr)) {
+    return false;
+  }
+  told_as_[place.number] = {place.began_ns, place.frame};
   ++told_;
   ++of_session_;
   return true;
@@ -140,8 +164,12 @@ bool FleetTalk::tell(const dds::FleetPlace& place, const std::string& session) {
 /// Hears as much as the loop has room for; the rest waits in DDS.
 void FleetTalk::hear() {
   const auto take = [this](const dds::FleetPlace& place, const dds::FleetSession* about) {
-    if (const auto session = others_.hear(place, about)) {
-      heard_.push({*session, place.frame, place.bytes});
+    if (place.visit) {
+      if (const auto same = others_.same_place(place)) {
+        heard_.push({same->session, place.frame, {}, {{same->visited, place.visit->frame}}});
+      }
+    } else if (const auto session = others_.hear(place, about)) {
+      heard_.push({*session, place.frame, place.bytes, {}});
     }
   };
   while (!heard_.full() && wire_.take(take)) {

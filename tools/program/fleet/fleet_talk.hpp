@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <unordered_map>
 #include <vector>
 
 #include "program/fleet/fleet_settings.hpp"
@@ -17,6 +18,7 @@
 #include "program/fleet/place_queue.hpp"
 #include "program/map/lasting_map.hpp"
 #include "seqloop/dds/fleet.hpp"
+#include "seqloop/linux/detail/return_queue.hpp"
 
 namespace seqloop::program {
 
@@ -34,6 +36,15 @@ class FleetTalk {
 
   /// The loop's side: what has been heard, in order.
   [[nodiscard]] PlaceQueue& heard() noexcept { return heard_; }
+
+  /// A frame of this drive that was at a place of another.
+  struct Found {
+    std::uint64_t frame = 0;    ///< as its source counts
+    std::uint32_t session = 0;  ///< as it was heard
+    std::uint64_t session_frame = 0;
+  };
+  /// The loop's side: others are told that these are one place, unless there is no room just now.
+  void found(const Found& found) noexcept { static_cast<void>(found_.push(found)); }
 
   /// Names of a session of which a place has been heard.
   [[nodiscard]] const Others::Names& names(std::uint32_t session) const {
@@ -58,9 +69,7 @@ class FleetTalk {
  private:
   /// A place that waits to be told.
   struct Waiting {
-    std::int64_t session = 0;
-    std::uint64_t frame = 0;
-    std::int64_t time_ns = 0;
+    SavedPlace place;  // without name and bytes
     std::vector<std::byte> bytes;
   };
   /// What was saved; the thread that saves may outlive this object.
@@ -78,7 +87,8 @@ class FleetTalk {
   void work();
   void tell_earlier();
   void tell_newest();
-  bool tell(const dds::FleetPlace& place, const std::string& session);
+  void tell_found();
+  bool tell(const SavedPlace& place, const std::string& session);
   void hear();
   void pass_on(std::string line);
 
@@ -89,10 +99,13 @@ class FleetTalk {
   dds::Fleet wire_;
   Others others_;
   PlaceQueue heard_;
+  live::ReturnQueue<Found, 1024> found_;
 
   std::uint64_t told_ = 0;        // the thread's
   std::uint64_t of_session_ = 0;  // told of the session that was told of last
   std::int64_t session_ = 0;
+  std::optional<dds::FleetVisit> newest_told_;                  // of the running session
+  std::unordered_map<std::uint64_t, dds::FleetVisit> told_as_;  // by number; 40 bytes a place
 
   std::mutex mutex_;
   std::deque<std::string> news_;  // under the mutex

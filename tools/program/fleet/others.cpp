@@ -77,6 +77,20 @@ std::optional<std::uint32_t> Others::hear(const dds::FleetPlace& place,
   return session->index;
 }
 
+std::optional<Others::SamePlace> Others::same_place(const dds::FleetPlace& place) const {
+  const auto has = [this](std::int64_t session, std::uint64_t frame) {
+    const auto found = sessions_.find(session);
+    if (found == sessions_.end() || frame > found->second.frame) {
+      return std::optional<std::uint32_t>();
+    }
+    return found->second.index;
+  };
+  const auto session = has(place.session, place.frame);
+  const auto visited = has(place.visit->session, place.visit->frame);
+  if (!session || !visited) return std::nullopt;
+  return SamePlace{*session, *visited};
+}
+
 /// @return null where nothing is known of the session, and nothing is to be
 Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSession* about) {
   const auto found = sessions_.find(place.session);
@@ -90,7 +104,8 @@ Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSes
     return nullptr;
   }
   Session session;
-  session.names = {name_of(about->robot, "without a name"), name_of(about->name, "without a name")};
+  session.names = {name_of(about->robot, "without a name"), name_of(about->name, "without a name"),
+                   place.session};
   session.refused = !alike(*about, own_);
   if (session.refused) {
     tell(

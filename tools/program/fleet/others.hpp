@@ -30,10 +30,19 @@ class Others {
   [[nodiscard]] std::optional<std::uint32_t> hear(const dds::FleetPlace& place,
                                                   const dds::FleetSession* about);
 
+  /// A place and one that it is a visit of, both taken in.
+  struct SamePlace {
+    std::uint32_t session;
+    std::uint32_t visited;  ///< session
+  };
+  /// @param place that says it is a visit. @return nothing where one of the two was not taken in
+  [[nodiscard]] std::optional<SamePlace> same_place(const dds::FleetPlace& place) const;
+
   /// Names that a session came with, fit to be printed.
   struct Names {
     std::string robot;
     std::string session;
+    std::int64_t began_ns = 0;
   };
   [[nodiscard]] const Names& names(std::uint32_t session) const { return names_[session]; }
 

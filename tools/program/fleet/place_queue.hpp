@@ -19,6 +19,12 @@ class PlaceQueue {
     std::uint32_t session = 0;
     std::uint64_t frame = 0;
     std::span<const std::byte> bytes{};
+    /// Nothing new, and no bytes: it is the same place as this one.
+    struct Visited {
+      std::uint32_t session = 0;
+      std::uint64_t frame = 0;
+    };
+    std::optional<Visited> visited = {};
   };
 
   PlaceQueue(std::size_t places, std::size_t place_bytes)
@@ -29,13 +35,13 @@ class PlaceQueue {
            places_.size();
   }
 
-  /// There must be room. @param place its bytes [place_bytes] are copied
+  /// There must be room. @param place its bytes, at most place_bytes, are copied
   void push(const Place& place) noexcept {
     const std::size_t in = in_.load(std::memory_order_relaxed);
     const std::size_t at = in % places_.size();
-    const auto kept = std::span(bytes_).subspan(at * size_, size_);
+    const auto kept = std::span(bytes_).subspan(at * size_, place.bytes.size());
     std::ranges::copy(place.bytes, kept.begin());
-    places_[at] = {place.session, place.frame, kept};
+    places_[at] = {place.session, place.frame, kept, place.visited};
     in_.store(in + 1, std::memory_order_release);
   }
 

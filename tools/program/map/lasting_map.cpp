@@ -48,9 +48,26 @@ void read_places(const std::filesystem::path& path, const SavedPlaceReader& read
   file.read([&](const sqlite::PlaceBlock& block) {
     const sqlite::SessionFacts& session = sessions.at(block.session);
     for (std::size_t i = 0; i < block.records.size(); ++i) {
-      read({session.began_ns, session.name, block.records[i].frame, block.records[i].time_ns,
-            block.places.subspan(i * bytes, bytes)});
+      const sqlite::PlaceRecord& record = block.records[i];
+      read({session.began_ns,
+            session.name,
+            record.number,
+            record.frame,
+            record.time_ns,
+            block.places.subspan(i * bytes, bytes),
+            {}});
     }
+  });
+  file.read_links([&](const sqlite::SavedLink& link) {
+    const auto session = sessions.find(link.session);
+    if (!link.place || session == sessions.end()) return;
+    read({session->second.began_ns,
+          session->second.name,
+          *link.place,
+          link.frame,
+          0,
+          {},
+          link.other});
   });
 }
 

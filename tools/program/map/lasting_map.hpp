@@ -32,9 +32,12 @@ struct PlaceForm {
 struct SavedPlace {
   std::int64_t began_ns = 0;  ///< when its session began, since 1970
   std::string_view session;
+  std::uint64_t number = 0;
   std::uint64_t frame = 0;  ///< of the session
   std::int64_t time_ns = 0;
   std::span<const std::byte> bytes{};
+  /// Nothing new, and no bytes: it is a visit of the place of this number.
+  std::optional<std::uint64_t> visits = {};
 };
 using SavedPlaceReader = std::function<void(const SavedPlace&)>;
 

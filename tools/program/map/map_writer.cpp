@@ -294,17 +294,7 @@ void MapWriter::save_once() {
     words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(said));
   }
   saved_frames_.store(frames, std::memory_order_release);
-  tell_saved();
-}
-
-/// Tells who wants to know of the places of the newest batch.
-void MapWriter::tell_saved() const {
-  if (!when_saved_) return;
-  const std::size_t size = map_->rows().saved_size();
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    when_saved_({stored_->begun().back(), stored_->newest_name(), records_[i].frame,
-                 records_[i].time_ns, std::span(bytes_).subspan(i * size, size)});
-  }
+  if (when_saved_) stored_->tell(batch, when_saved_);
 }
 
 std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const Answer> rest) {

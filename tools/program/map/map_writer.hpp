@@ -111,7 +111,6 @@ class MapWriter {
   bool save();
   void save_once();
   [[nodiscard]] bool left() const;
-  void tell_saved() const;
   void tell(std::string text);
   [[nodiscard]] std::size_t words();
 

@@ -24,12 +24,20 @@ struct FleetSession {
   std::uint32_t place_bytes = 0;
 };
 
+/// A place that was told before.
+struct FleetVisit {
+  std::int64_t session = 0;
+  std::uint64_t frame = 0;
+};
+
 /// A place that a robot has saved.
 struct FleetPlace {
   std::int64_t session = 0;  ///< when it began, in nanoseconds since 1970: its name for ever
   std::uint64_t frame = 0;   ///< of the session
   std::int64_t time_ns = 0;  ///< of the frame, in the session's own clock
   std::span<const std::byte> bytes{};
+  /// Nothing new: the place was told before, and this is the same place, seen earlier.
+  std::optional<FleetVisit> visit = {};
 };
 
 /// Places that robots tell each other, on the topic `seqloop_fleet/places`
