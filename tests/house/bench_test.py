@@ -65,7 +65,7 @@ def compare(folder):
     cases = [("slower", [110.0, 103.0], 1, "slower"), ("faster", [90.0, 97.0], 0, "faster"),
              ("noise", [120.0, 90.0], 0, "-"), ("little", [101.0], 0, "-")]
     for name, times, code, moved in cases:
-        run = call(TOOLS / "bench-compare", steady, program(folder, name, times), "--only", "step")
+        run = call(TOOLS / "bench-compare", "--pairs", "5", steady, program(folder, name, times), "--only", "step")
         expect(run.returncode == code and run.stdout.rstrip().endswith(f"| {moved} |"), f"{name}: {run}")
     few = call(TOOLS / "bench-compare", "--pairs", "2", steady, steady)
     expect(few.returncode != 0 and "Usage" in few.stderr, f"too few pairs are refused: {few}")
