@@ -8,11 +8,10 @@
 namespace seqloop::program {
 
 void add_fleet_options(OptionTable& options, FleetSettings& settings) {
-  options.section("Map");
+  options.section("Map", Shown::in_help_all);
   options.text("fleet", settings.name,
                "tell the robots of this fleet the places that are saved, over DDS, and find loops "
                "with theirs; with --map [alone]");
-  options.section("Map", Shown::in_help_all);
   options.count("fleet-places", settings.places,
                 "room for places of other robots, beside --max-places [20000]");
   options.text("robot", settings.robot, "this robot's name among others [the machine's]");
