@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <arm_neon.h>
-
 #include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
+#include "kernels/neon_bytes.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -10,19 +9,9 @@ namespace {
 
 /// Products of bytes fit 16 bits, and so do sums of two of them as long as no value is -128: only
 /// these are widened.
-struct Products {
-  using Sum = int32x4_t;
-  using Row = int8x16_t;
-  using Query = int8x16_t;
-  static constexpr std::size_t step = 16;
-  static constexpr std::uint32_t row_offset = 0;
+struct Products : NeonBytes {
   static constexpr std::size_t block_queries = 4;
-  static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 4;
-
-  static Sum zero() noexcept { return vdupq_n_s32(0); }
-  static Row row(const std::int8_t* from) noexcept { return vld1q_s8(from); }
-  static Query query(const std::int8_t* from) noexcept { return vld1q_s8(from); }
 
   static Sum add(Sum sum, Row row, Query query) noexcept {
     const int16x8_t first = vmull_s8(vget_low_s8(row), vget_low_s8(query));
