@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <optional>
 
 #include "seqloop/detail/portable_math.hpp"
 
@@ -136,20 +137,23 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::s
 
 /// How much better the best line through a frame's row is than the best one elsewhere.
 double PendingAnswers::margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept {
-  double here = 0.0;
-  double elsewhere = 0.0;
+  std::optional<double> here;
+  std::optional<double> elsewhere;
   for (const FoundLine& line : lines_in(slot).first(waiting_[slot].lines)) {
     const bool same = line.row < map.size() && map.same_place(line.row, row);
-    double& lowest = same ? here : elsewhere;
-    if (lowest == 0.0) lowest = line.score;
+    std::optional<double>& lowest = same ? here : elsewhere;
+    if (!lowest) lowest = line.score;
   }
   constexpr double most = 0.2;
-  if (here == 0.0) return -most;
-  if (elsewhere == 0.0) return most;
+  if (!here) return -most;
+  if (!elsewhere) return most;
+  // A score of 0 has no logarithm: nothing can be seen better than to the bit.
+  if (*here == 0.0) return *elsewhere == 0.0 ? 0.0 : most;
+  if (*elsewhere == 0.0) return -most;
   // From step to step it is nearly always the same two lines.
   Lead& lead = waiting_[slot].lead;
-  if (lead.here != here || lead.elsewhere != elsewhere) {
-    lead = {here, elsewhere, logarithm(elsewhere / here)};
+  if (lead.here != *here || lead.elsewhere != *elsewhere) {
+    lead = {*here, *elsewhere, logarithm(*elsewhere / *here)};
   }
   return std::clamp(lead.log_ratio, -most, most);
 }

@@ -52,15 +52,6 @@ class Walk {
   std::vector<float> place_ = std::vector<float>(descriptor_size, 0.0F);
 };
 
-/// With a little noise: no camera sees a place twice to the bit.
-std::vector<float> seen_again(std::vector<float> place) {
-  static std::mt19937 random{seed + 1};
-  constexpr auto middle = static_cast<float>(std::mt19937::max() / 2);
-  for (float& value : place) value += 0.02F * (static_cast<float>(random()) / middle - 1.0F);
-  normalise(place);
-  return place;
-}
-
 struct SyntheticMap {
   SyntheticMap() {
     Walk walk;
@@ -68,7 +59,7 @@ struct SyntheticMap {
       const std::vector<float> place = walk.next();
       ok = map.add(place) && ok;
       for (const std::size_t first : stretches) {
-        if (row >= first && row < first + frames) query[query_size++] = seen_again(place);
+        if (row >= first && row < first + frames) query[query_size++] = place;
       }
     }
   }

@@ -220,6 +220,24 @@ TEST(PlaceBelief, PatienceMayBeNoneOrLong) {
   }
 }
 
+// A row that is the query to the bit has a line of score 0.
+TEST(PlaceBelief, TakesAScoreOfZeroForTheBest) {
+  const oracle::Vectors drive = way(13, 300, 0.5F, 1);
+  const Said said = drive_through(drive, drive, settings(Use::localise));
+  expect_each_frame_once(said, drive.size());
+  for (const Answer& answer : said.answers) {
+    ASSERT_EQ(answer.gate, Gate::match) << answer.frame;
+    EXPECT_EQ(answer.match->place, answer.frame);
+  }
+}
+
+TEST(PlaceBelief, TakesNoneOfSeveralScoresOfZero) {
+  const oracle::Vectors part = way(14, 75, 0.5F, 1);
+  oracle::Vectors repeated;
+  for (int i = 0; i < 4; ++i) repeated.insert(repeated.end(), part.begin(), part.end());
+  EXPECT_EQ(accepted(drive_through(repeated, part, settings(Use::localise))), 0U);
+}
+
 TEST(PlaceBelief, TakesAnything) {
   const std::vector<float> constant(size, 1.0F / 16.0F);
   const oracle::Vectors alike(200, constant);
