@@ -11,6 +11,8 @@
 #include "opencv/detail/one_line.hpp"
 #include "opencv/detail/picture_file.hpp"
 #include "opencv/detail/picture_view.hpp"
+#include "seqloop/fault.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::opencv {
 namespace {
@@ -58,6 +60,8 @@ class PictureFileDecoder::Impl {
       if (failure.code == cv::Error::StsNoMem) return no_memory(" (" + one_line(failure.err) + ")");
     } catch (const std::bad_alloc&) {
       return no_memory("");
+    } catch (const SetupError& error) {  // codecs that cannot be loaded
+      return fault_ = error.what();
     }
     return unreadable;
   }
@@ -66,10 +70,7 @@ class PictureFileDecoder::Impl {
   [[nodiscard]] std::string_view decode_any(std::span<const std::uint8_t> file, Image& image) {
     // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
     picture_.release();
-    // OpenCV has no view of constant bytes; these are only read.
-    picture_ = cv::imdecode(
-        cv::Mat(1, static_cast<int>(file.size()), CV_8UC1, const_cast<std::uint8_t*>(file.data())),
-        flags_);
+    picture_ = file_codecs().decode(file, flags_);
     if (picture_.empty()) return unreadable;
     image = view(picture_);
     return {};

@@ -14,6 +14,7 @@
 #include "opencv/detail/quiet_log.hpp"
 #include "opencv/detail/video_file.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::opencv {
 namespace {
@@ -51,7 +52,7 @@ class VideoSource::Impl {
     if (!std::filesystem::is_regular_file(status)) throw SetupError(Fault{name, "is not a file"});
     try {
       if (std::none_of(backends.begin(), backends.end(),
-                       [&](cv::VideoCaptureAPIs backend) { return capture_.open(name, backend); }))
+                       [&](cv::VideoCaptureAPIs backend) { return capture_->open(name, backend); }))
         throw SetupError(
             Fault{name, "is not a video that OpenCV can read",
                   "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
@@ -94,18 +95,18 @@ class VideoSource::Impl {
 
  private:
   void read_properties(bool tells_rate) {
-    const double rate = capture_.get(cv::CAP_PROP_FPS);
+    const double rate = capture_->get(cv::CAP_PROP_FPS);
     rate_told_ = tells_rate && std::isfinite(rate) && rate > 0.0;
     if (rate_told_) rate_ = rate;
-    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    const double count = capture_->get(cv::CAP_PROP_FRAME_COUNT);
     if (count >= 1.0 && count < largest_count) declared_ = static_cast<std::uint64_t>(count);
   }
 
   /// Decodes into picture_ and moves the clock. @return false at the end
   [[nodiscard]] bool read() {
-    if (!capture_.read(picture_) || picture_.empty()) return false;
+    if (!capture_->read(picture_) || picture_.empty()) return false;
     if (picture_.type() != CV_8UC1 && picture_.type() != CV_8UC3) return false;
-    const double stamp = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000.0;
+    const double stamp = capture_->get(cv::CAP_PROP_POS_MSEC) / 1000.0;
     if (first_) {
       first_ = false;
       start_s_ = std::isfinite(stamp) ? stamp : 0.0;
@@ -122,7 +123,7 @@ class VideoSource::Impl {
     return gray_picture_;
   }
 
-  cv::VideoCapture capture_;
+  std::unique_ptr<cv::VideoCapture> capture_ = file_codecs().video();
   cv::Mat picture_;
   cv::Mat gray_picture_;
   bool gray_;

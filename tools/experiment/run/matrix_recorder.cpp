@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
+
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -51,7 +53,7 @@ std::vector<std::uint8_t> MatrixRecorder::png() const {
     }
   }
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", picture, bytes);
+  opencv::file_codecs().encode(".png", picture, bytes);
   return bytes;
 }
 

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
-// By itself: who only takes pictures along needs no OpenCV.
-#include <opencv2/imgcodecs.hpp>
+// By itself: who only takes pictures along needs no encoder.
 #include <vector>
 
 #include "program/drives/small_picture.hpp"
+#include "seqloop/turbojpeg/encode_jpeg.hpp"
 
 namespace seqloop::program {
 
 std::string jpeg(const SmallPictureFacts& facts, std::span<const std::uint8_t> pixels,
                  int quality) {
-  // cv::Mat has no view of constant pixels; this one is only read.
-  const cv::Mat view(facts.height, facts.width, facts.gray ? CV_8UC1 : CV_8UC3,
-                     const_cast<std::uint8_t*>(pixels.data()));
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", view, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  const PixelFormat format = facts.gray ? PixelFormat::gray8 : PixelFormat::bgr8;
+  const std::size_t row = static_cast<std::size_t>(facts.width) * (facts.gray ? 1U : 3U);
+  const std::vector<std::uint8_t> bytes =
+      turbojpeg::encode_jpeg({pixels.data(), facts.width, facts.height, row, format}, quality);
   return {bytes.begin(), bytes.end()};
 }
 

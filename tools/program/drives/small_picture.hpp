@@ -50,7 +50,7 @@ bool shrink(const Image& image, std::uint64_t number,
 using JpegEncoder = std::string (*)(const SmallPictureFacts& facts,
                                     std::span<const std::uint8_t> pixels, int quality);
 
-/// The one of OpenCV.
+/// The one of libjpeg-turbo.
 [[nodiscard]] std::string jpeg(const SmallPictureFacts& facts, std::span<const std::uint8_t> pixels,
                                int quality);
 

@@ -2,12 +2,12 @@
 #include "program/drives/warm_up.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <vector>
 
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
+#include "seqloop/turbojpeg/encode_jpeg.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -34,9 +34,10 @@ std::vector<std::uint8_t> sent_as(RawFormat format, int width, int height) {
     return std::vector<std::uint8_t>(bytes_of(format, row_bytes(format, width), height),
                                      middle_gray);
   }
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", cv::Mat(height, width, CV_8UC3, cv::Scalar::all(middle_gray)), bytes);
-  return bytes;
+  const std::size_t row = std::size_t{3} * static_cast<std::size_t>(width);
+  const std::vector<std::uint8_t> pixels(row * static_cast<std::size_t>(height), middle_gray);
+  constexpr int quality = 95;
+  return turbojpeg::encode_jpeg({pixels.data(), width, height, row, PixelFormat::bgr8}, quality);
 }
 
 void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::mt19937& random) {

@@ -12,6 +12,7 @@
 
 #include "seqloop/difference.hpp"
 #include "seqloop/files/output_file.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -25,7 +26,7 @@ const cv::Scalar border_colour(200, 120, 40);  // of sessions
 
 void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".png", picture, bytes);
+  opencv::file_codecs().encode(".png", picture, bytes);
   files::OutputFile out(file);
   out.write(std::as_bytes(std::span(bytes)));
   out.commit();
@@ -236,8 +237,8 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
   for (const Answer& answer : some) {
     const std::string jpeg = pictures->jpeg(answer.match->place);
     if (jpeg.empty()) continue;
-    const std::vector<char> bytes(jpeg.begin(), jpeg.end());
-    const cv::Mat thumbnail = cv::imdecode(bytes, cv::IMREAD_COLOR);
+    const std::vector<std::uint8_t> bytes(jpeg.begin(), jpeg.end());
+    const cv::Mat thumbnail = opencv::file_codecs().decode(bytes, cv::IMREAD_COLOR);
     if (!thumbnail.empty()) known[answer.match->place] = small(thumbnail, cv::INTER_LINEAR);
   }
   const auto name = [&map](std::uint64_t place) {

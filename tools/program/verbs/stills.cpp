@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "files/output_folder.hpp"
@@ -12,6 +12,7 @@
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -66,7 +67,7 @@ std::vector<unsigned char> encode(const Image& image, const std::string& format)
   std::vector<unsigned char> bytes;
   bool encoded = false;
   try {
-    encoded = cv::imencode("." + format, picture, bytes);
+    encoded = opencv::file_codecs().encode("." + format, picture, bytes);
   } catch (const cv::Exception&) {  // sizes that the format cannot hold
   }
   if (!encoded) {

@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "seqloop/opencv/file_codecs.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -17,7 +19,7 @@ cv::Mat nearest(const PictureStore& store, std::uint64_t number) {
   };
   const std::string jpeg = store.jpeg(*std::ranges::min_element(around, {}, distance));
   const std::vector<std::uint8_t> bytes(jpeg.begin(), jpeg.end());
-  return bytes.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_COLOR);
+  return bytes.empty() ? cv::Mat() : opencv::file_codecs().decode(bytes, cv::IMREAD_COLOR);
 }
 
 }  // namespace
@@ -32,7 +34,7 @@ std::vector<std::uint8_t> pair_picture(const PictureStore& frames, std::uint64_t
   left.copyTo(pair(cv::Rect({0, 0}, left.size())));
   right.copyTo(pair(cv::Rect({left.cols, 0}, right.size())));
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", pair, bytes);
+  opencv::file_codecs().encode(".jpg", pair, bytes);
   return bytes;
 }
 
