@@ -10,19 +10,25 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "seqloop/turbojpeg/jpeg_file_decoder.hpp"
+
 namespace {
+
+using seqloop::Image;
+using seqloop::RawFormat;
+using seqloop::turbojpeg::JpegFileDecoder;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -42,7 +48,8 @@ struct Settings {
 
 struct Pictures {
   std::vector<Bytes> frames;
-  cv::Size size;
+  int width = 0;
+  int height = 0;
 };
 
 [[noreturn]] void fail(const std::string& what) {
@@ -55,18 +62,19 @@ Bytes read_file(const std::filesystem::path& path) {
 }
 
 /// Studio range of ITU-R 601, the colour of two neighbours from the left one.
-Bytes to_yuyv(const cv::Mat& picture) {
+/// @param picture B, G, R
+Bytes to_yuyv(const Image& picture) {
+  const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(value)); };
   Bytes bytes;
-  bytes.reserve(picture.total() * 2);
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto& left = picture.at<cv::Vec3b>(y, x / 2 * 2);
-      const auto& here = picture.at<cv::Vec3b>(y, x);
-      bytes.push_back(cv::saturate_cast<std::uint8_t>(16.0 + 0.098 * here[0] + 0.504 * here[1] +
-                                                      0.257 * here[2]));
+  for (int y = 0; y < picture.height; ++y) {
+    const std::uint8_t* const row = picture.data + static_cast<std::size_t>(y) * picture.stride;
+    for (int x = 0; x < picture.width; ++x) {
+      const std::uint8_t* const left = row + 3 * (x / 2 * 2);
+      const std::uint8_t* const here = row + 3 * x;
+      bytes.push_back(byte(16.0 + 0.098 * here[0] + 0.504 * here[1] + 0.257 * here[2]));
       const double colour = x % 2 == 0 ? 0.439 * left[0] - 0.291 * left[1] - 0.148 * left[2]
                                        : -0.071 * left[0] - 0.368 * left[1] + 0.439 * left[2];
-      bytes.push_back(cv::saturate_cast<std::uint8_t>(128.0 + colour));
+      bytes.push_back(byte(128.0 + colour));
     }
   }
   return bytes;
@@ -85,23 +93,29 @@ Pictures load(const Settings& settings) {
                                  ? paths.size()
                                  : std::min<std::uint64_t>(paths.size(), first + settings.frames);
   Pictures pictures;
-  pictures.size = cv::imread(paths[first].string()).size();
+  JpegFileDecoder decoder(false);
   for (std::size_t at = first; at < last; ++at) {
-    pictures.frames.push_back(settings.yuyv ? to_yuyv(cv::imread(paths[at].string()))
-                                            : read_file(paths[at]));
+    pictures.frames.push_back(read_file(paths[at]));
+    Bytes& file = pictures.frames.back();
+    if (at > first && !settings.yuyv) continue;
+    Image picture;
+    const auto fault = decoder.decode({.bytes = file, .format = RawFormat::mjpg}, picture);
+    if (!fault.empty()) throw std::runtime_error(paths[at].string() + ": " + std::string(fault));
+    if (at == first) pictures.width = picture.width, pictures.height = picture.height;
+    if (settings.yuyv) file = to_yuyv(picture);
   }
   return pictures;
 }
 
 /// Opens the device and makes it a camera, without a frame yet.
-int open_device(const Settings& settings, cv::Size size) {
+int open_device(const Settings& settings, const Pictures& pictures) {
   const int device = open(settings.device.c_str(), O_RDWR | O_CLOEXEC);
   if (device < 0) fail(settings.device);
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
   auto& pixels = format.fmt.pix;
-  pixels.width = static_cast<std::uint32_t>(size.width);
-  pixels.height = static_cast<std::uint32_t>(size.height);
+  pixels.width = static_cast<std::uint32_t>(pictures.width);
+  pixels.height = static_cast<std::uint32_t>(pictures.height);
   pixels.pixelformat = settings.yuyv ? V4L2_PIX_FMT_YUYV : V4L2_PIX_FMT_MJPEG;
   pixels.field = V4L2_FIELD_NONE;
   const v4l2_pix_format asked = pixels;
@@ -132,7 +146,7 @@ void send(int device, const Settings& settings, std::uint64_t frame, Bytes bytes
 
 void play(const Settings& settings) {
   const Pictures pictures = load(settings);
-  const int device = open_device(settings, pictures.size);
+  const int device = open_device(settings, pictures);
   std::puts("ready");
   std::fflush(stdout);
   while (!settings.wait_for.empty() && !std::filesystem::exists(settings.wait_for)) {
