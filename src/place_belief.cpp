@@ -235,11 +235,20 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
   if (top == rows.end()) return;
   double place = 0.0;
   double wrong = -2.0;
-  for (const Hypothesis& other : rows) {
-    if (view.map->same_place(other.row, top->row)) {
-      place += other.mass;
-    } else {
-      wrong = std::max(wrong, other.gain);
+  for (std::size_t first = 0; first < rows.size();) {
+    // Another session may know the place, too: its likeliest row is no wrong one.
+    const std::size_t end = view.map->order().around(rows[first].row).last;
+    std::size_t last = first;
+    std::size_t best = first;
+    for (; last < rows.size() && rows[last].row < end; ++last) {
+      if (rows[last].mass > rows[best].mass) best = last;
+    }
+    for (; first < last; ++first) {
+      if (view.map->same_place(rows[first].row, top->row)) {
+        place += rows[first].mass;
+      } else if (!view.map->same_place(rows[first].row, rows[best].row)) {
+        wrong = std::max(wrong, rows[first].gain);
+      }
     }
   }
   // Somewhere new the best row is a wrong one too.

@@ -177,6 +177,31 @@ TEST_P(Sessions, EarlierPlacesAreCandidatesFromTheFirstFrameOn) {
   }
 }
 
+TEST_P(Sessions, ThatShowTheSamePlacesDoNotContestThem) {
+  // One road, as five drives saw it; nobody knows yet that they are one.
+  std::vector<Vectors> five;
+  for (const float noise : {0.5F, 0.51F, 0.52F, 0.53F, 0.54F}) {
+    five.push_back(oracle::drive(9, 300, 64, noise));
+  }
+  const Vectors query = oracle::drive(9, 300, 64, 0.6F);
+  MatcherConfig config;
+  config.arithmetic = GetParam();
+  std::array<std::size_t, 2> accepted{};
+  for (const std::size_t several : {0U, 1U}) {
+    PlaceMap map =
+        map_of_sessions({five.begin(), several == 1 ? five.end() : five.begin() + 1}, config, 0);
+    Detector detector(config, map);
+    const auto count = [&](std::span<const Answer> answers) {
+      for (const Answer& answer : answers) accepted[several] += answer.gate == Gate::match;
+    };
+    for (const auto& seen : query) count(detector.step(seen).answers);
+    count(detector.finish());
+  }
+  std::printf("accepted in one session %zu, in five %zu\n", accepted[0], accepted[1]);
+  EXPECT_GT(accepted[0], 150U);
+  EXPECT_GE(accepted[1], accepted[0] - accepted[0] / 10);
+}
+
 /// Of the members: what lies between them is nobody's.
 bool same_bits(const Match& a, const Match& b) {
   const auto bits = [](const Match& match) {

@@ -127,6 +127,18 @@ def latencies(by: Robot, to: Robot) -> numpy.ndarray:
     return numpy.array(waits)
 
 
+def delays(runs: list[Robot]) -> numpy.ndarray:
+    """From when two robots had both seen a place until one of them found that, seconds."""
+    seen = [{line["newest"]: when for when, line in run.lines if line["newest"] is not None} for run in runs]
+    waits = []
+    for mine, run in zip(seen, runs):
+        for when, line in run.lines:
+            waits += [when - max(mine[answer["frame"]], seen[int(answer["robot"])][answer["session_frame"]])
+                      for answer in line["fleet"] if answer["status"] == "match" and answer["frame"] in mine
+                      and answer["session_frame"] in seen[int(answer["robot"])]]
+    return numpy.array(waits)
+
+
 def misses(runs: list[Robot]) -> str:
     lines = [line for run in runs for _, line in run.lines if line["newest"] is not None]
     match = numpy.percentile([line["latency_ms"]["match"] for line in lines], [50, 99])
@@ -187,6 +199,9 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
                   f"{found}, {found / max(possible, 1):.3f}")
             print("  resident memory, from the first hundred frames to the last: "
                   + ", ".join(f"{run.memory[0] // 1024} to {run.memory[-1] // 1024} MiB" for run in runs))
+            waits = delays(runs)
+            print(f"  until a loop was found that both had seen: p50 {numpy.median(waits):.2f} s, p99 "
+                  f"{numpy.percentile(waits, 99):.2f} s")
             if robots == 2:
                 waits = numpy.concatenate([latencies(runs[0], runs[1]), latencies(runs[1], runs[0])])
                 print(f"  until the other knew a place: p50 {numpy.median(waits):.2f} s, p99 "
