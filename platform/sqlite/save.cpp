@@ -9,11 +9,12 @@ namespace {
 std::int64_t signed_of(std::uint64_t value) { return static_cast<std::int64_t>(value); }
 
 /// Throws std::invalid_argument: what of a batch does not fit.
-void check_batch(const MapBatch& batch, const MapForm& form, std::uint64_t next) {
+void check_batch(const MapBatch& batch, const MapForm& form) {
   if (batch.places.size() / form.place_bytes != batch.records.size() ||
       batch.places.size() % form.place_bytes != 0) {
     throw std::invalid_argument("MapFile::save: bytes of places do not fit the records");
   }
+  std::uint64_t next = 0;
   for (const PlaceRecord& record : batch.records) {
     if (record.number < next || record.number >= number_end) {
       throw std::invalid_argument("MapFile::save: numbers of places do not ascend");
@@ -32,6 +33,29 @@ void MapFile::State::save_session(const SessionFacts& facts) {
             std::string_view(form.describer), signed_of(form.descriptor_size),
             signed_of(form.place_bytes), session_sum(facts, form))
       .run();
+}
+
+void MapFile::State::check_numbers(std::int64_t session, std::uint64_t first,
+                                   std::uint64_t last) const {
+  bool fits = session >= 1 && session < counts.next_session;
+  // The newest session's are above all that were ever given.
+  if (session + 1 == counts.next_session) fits = signed_of(first) >= counts.next_place;
+  Statement before(database,
+                   "SELECT session, records FROM block WHERE first <= ? ORDER BY first DESC "
+                   "LIMIT 1");
+  if (before.with(signed_of(first)).step()) {
+    const std::vector<PlaceRecord> records = decode_records(before.blob(1));
+    fits =
+        fits && before.integer(0) <= session && !records.empty() && records.back().number < first;
+  }
+  Statement behind(database,
+                   "SELECT session, first FROM block WHERE first > ? ORDER BY first LIMIT 1");
+  if (behind.with(signed_of(first)).step()) {
+    fits = fits && behind.integer(0) > session && behind.integer(1) > signed_of(last);
+  }
+  if (!fits) {
+    throw std::invalid_argument("MapFile::save: places of other sessions have these numbers");
+  }
 }
 
 void MapFile::State::insert_block(std::int64_t session, std::span<const PlaceRecord> records,
@@ -129,9 +153,11 @@ std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_
 
 void MapFile::save(std::int64_t session, const MapBatch& batch) {
   State& map = *state_;
-  check_batch(batch, map.form, next_place());
-  if (session + 1 != map.counts.next_session) {
-    throw std::invalid_argument("MapFile::save: only the newest session grows");
+  check_batch(batch, map.form);
+  if (!batch.records.empty()) {
+    map.check_numbers(session, batch.records.front().number, batch.records.back().number);
+  } else if (session < 1 || session >= map.counts.next_session) {
+    throw std::invalid_argument("MapFile::save: no such session");
   }
   map.saving([&] {
     SessionFacts facts = map.session(session);
@@ -142,7 +168,10 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
       map.insert_block(session, batch.records.subspan(i, count),
                        batch.places.subspan(i * size, count * size));
     }
-    if (!batch.records.empty()) map.counts.next_place = signed_of(batch.records.back().number) + 1;
+    if (!batch.records.empty()) {
+      map.counts.next_place =
+          std::max(map.counts.next_place, signed_of(batch.records.back().number) + 1);
+    }
     map.insert_links(session, batch.links);
     if (!batch.thumbnails.empty()) {
       Statement insert(map.database, "INSERT OR IGNORE INTO thumbnail VALUES(?, ?, ?)");

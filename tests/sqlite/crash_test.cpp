@@ -41,6 +41,7 @@ class RecordedRun {
         test::save_sample(map, id, 30 * b, 5 + 10 * (b % 3), removed);
         acknowledged(map);
       }
+      if (s == 0) grow_side_by_side(map, batches);
       if (s == 1) forget(map, "drive 0");
       if (s == 2) merge(map);
       if (s == 3) retire(map, "drive 2");
@@ -67,6 +68,21 @@ class RecordedRun {
     contents_.push_back(test::content_of(map, fault));
     EXPECT_EQ(fault, "");
     vfs_.say(newest());
+  }
+
+  /// Sessions of several robots, a batch of each in turn.
+  void grow_side_by_side(MapFile& map, std::size_t batches) {
+    const std::uint64_t first = map.next_place();
+    std::array<std::int64_t, 3> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      ids[i] = map.begin_session("robot " + std::to_string(i), 1, "");
+    }
+    for (std::size_t b = 0; b < batches; ++b) {
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        test::save_sample(map, ids[i], 30 * b, 5 + b, {}, first + 1000 * i + 30 * b);
+        acknowledged(map);
+      }
+    }
   }
 
   void forget(MapFile& map, const std::string& name) {

@@ -162,8 +162,50 @@ TEST_F(Map, RefusesBatchesThatDoNotFit) {
   EXPECT_EQ(content(map), before);
   const std::string fault = setup_error([&] { (void)map.begin_session("a", 0, ""); });
   EXPECT_TRUE(says(fault, "there is a session 'a' already"));
-  (void)map.begin_session("b", 0, "");
-  EXPECT_THROW(map.save(first, {}), std::invalid_argument);
+}
+
+TEST_F(Map, SeveralSessionsGrowSideBySide) {
+  MapFile map = open();
+  constexpr std::uint64_t room = 1000;
+  std::array<std::int64_t, 3> ids{};
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    ids[i] = map.begin_session("robot " + std::to_string(i), 0, "");
+  }
+  // Not in the order in which they began.
+  for (const std::uint64_t batch : {0U, 1U, 2U, 3U}) {
+    for (const std::uint64_t robot : {2U, 0U, 1U}) {
+      if (robot == 2 && batch == 3) continue;
+      test::save_sample(map, ids[robot], batch * 11, 10, {}, robot * room + batch * 10);
+    }
+  }
+  std::uint64_t last = 0;
+  std::map<std::int64_t, std::size_t> places;
+  map.read([&](const sqlite::PlaceBlock& block) {
+    for (const sqlite::PlaceRecord& record : block.records) {
+      EXPECT_GE(record.number, last);
+      last = record.number;
+      EXPECT_EQ(record.number / room, static_cast<std::uint64_t>(block.session - ids[0]));
+      ++places[block.session];
+    }
+  });
+  EXPECT_EQ(places,
+            (std::map<std::int64_t, std::size_t>{{ids[0], 40}, {ids[1], 40}, {ids[2], 30}}));
+  EXPECT_EQ(map.next_place(), 2 * room + 30);
+  const std::string before = content(map);
+  const auto refused = [&](std::int64_t session, std::uint64_t first, std::uint64_t end) {
+    const std::array<sqlite::PlaceRecord, 2> records{{{first, 0, 0}, {end, 1, 0}}};
+    const std::vector<std::byte> bytes(2 * test::sample_form().place_bytes);
+    EXPECT_THROW(map.save(session, {.records = records, .places = bytes}), std::invalid_argument)
+        << session << ": " << first << ", " << end;
+  };
+  refused(ids[0], 39, 50);                // its own
+  refused(ids[0], 40, room);              // the next one's
+  refused(ids[0], room + 40, room + 50);  // behind the next one's
+  refused(ids[1], 50, 60);                // before its own
+  refused(ids[1], 2 * room + 40, 2 * room + 50);
+  refused(ids[2], 2 * room + 29, 2 * room + 40);
+  refused(ids[2] + 1, 9 * room, 9 * room + 1);
+  EXPECT_EQ(content(map), before);
 }
 
 TEST_F(Map, PlacesThatGoDoNotComeBackAndTheirNumbersAreNotUsedAgain) {

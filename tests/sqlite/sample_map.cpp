@@ -24,12 +24,12 @@ std::vector<std::byte> sample_place(std::uint64_t number, std::size_t bytes) {
 }
 
 void save_sample(MapFile& map, std::int64_t session, std::uint64_t frames, std::size_t places,
-                 std::vector<std::uint64_t> removed) {
+                 std::vector<std::uint64_t> removed, std::optional<std::uint64_t> first) {
   std::vector<PlaceRecord> records;
   std::vector<std::byte> bytes;
   std::vector<SavedThumbnail> pictures;
   std::vector<SavedLink> links;
-  const std::uint64_t next = map.next_place();
+  const std::uint64_t next = first.value_or(map.next_place());
   const auto size = static_cast<std::size_t>(map.form().place_bytes);
   for (std::uint64_t number = next; number < next + places; ++number) {
     records.push_back(

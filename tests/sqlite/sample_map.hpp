@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@ namespace seqloop::test {
 
 /// Saves places, with links, a thumbnail and statistics that follow from the numbers.
 /// @param frames the session has so far @param removed places that go at the same time
+/// @param first number; nothing: the next
 void save_sample(sqlite::MapFile& map, std::int64_t session, std::uint64_t frames,
-                 std::size_t places, std::vector<std::uint64_t> removed = {});
+                 std::size_t places, std::vector<std::uint64_t> removed = {},
+                 std::optional<std::uint64_t> first = std::nullopt);
 
 /// All that a map holds, as text; two maps that say the same are the same. `check` must find
 /// nothing wrong. @param fault told what is wrong, else

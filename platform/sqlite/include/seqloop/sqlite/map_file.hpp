@@ -98,7 +98,7 @@ struct ThumbnailFacts {
 /// What is saved at once: all of it or nothing.
 struct MapBatch {
   std::uint64_t frames = 0;                ///< of the session are dealt with, these among them
-  std::span<const PlaceRecord> records{};  ///< new places; numbers ascend, from `next_place` on
+  std::span<const PlaceRecord> records{};  ///< new places; numbers ascend, as `save` says
   std::span<const std::byte> places{};     ///< [records * place_bytes]
   std::span<const SavedLink> links{};      ///< `session` is not looked at
   std::span<const SavedThumbnail> thumbnails{};  ///< the first one of a place stays
@@ -176,13 +176,14 @@ class MapFile {
   /// and SQLite's own structure. Empty: nothing. Work: the whole file, twice.
   [[nodiscard]] std::vector<std::string> check() const;
 
-  /// Begins a session; only the newest one grows.
+  /// Begins a session.
   /// @return its id. Throws SetupError: the name is taken or empty; SaveError.
   std::int64_t begin_session(const std::string& name, std::int64_t began_ns,
                              const std::string& settings);
 
   /// Saves a batch. When this returns, it survives cut power. May take as long as the disk does.
-  /// @param session the newest one
+  /// @param session the newest one gives numbers from `next_place` on. An earlier one may grow as
+  ///   well where there is room: above its places' numbers, and below those of all later sessions
   /// Throws SaveError: disk full, not writable, …: nothing of it is saved, the map is as before.
   /// std::invalid_argument: another session, numbers or sizes that do not fit.
   void save(std::int64_t session, const MapBatch& batch);
