@@ -102,7 +102,8 @@ class Fleet::Impl {
     dds_waitset_wait(waits_.handle(), nullptr, 0, at_most.count());
   }
 
-  bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear) {
+  bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear,
+            const std::function<void(std::int64_t)>& gone) {
     while (true) {
       void* sample = nullptr;
       dds_sample_info_t info{};
@@ -112,8 +113,12 @@ class Fleet::Impl {
         dds_return_loan(reader_.handle(), const_cast<void**>(loan), count);
       };
       const std::unique_ptr<void*, decltype(give_back)> loan(&sample, give_back);
-      if (!info.valid_data) continue;  // a robot that has gone
       const auto& place = *static_cast<const seqloop_fleet_Place*>(sample);
+      if (!info.valid_data) {
+        const bool nobody = info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
+        if (gone && nobody) gone(place.session);
+        continue;
+      }
       FleetPlace heard{
           place.session,
           place.frame,
@@ -163,8 +168,9 @@ bool Fleet::publish(const FleetPlace& place, const FleetSession* session) {
 
 void Fleet::wait(Nanoseconds at_most) noexcept { impl_->wait(at_most); }
 
-bool Fleet::take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear) {
-  return impl_->take(hear);
+bool Fleet::take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear,
+                 const std::function<void(std::int64_t)>& gone) {
+  return impl_->take(hear, gone);
 }
 
 std::uint32_t Fleet::others() const noexcept { return impl_->others(); }

@@ -76,6 +76,7 @@ class RecordedRun {
     std::array<std::int64_t, 3> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
       ids[i] = map.begin_session("robot " + std::to_string(i), 1, "");
+      acknowledged(map);
     }
     for (std::size_t b = 0; b < batches; ++b) {
       for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -164,6 +164,8 @@ bool FleetTalk::tell(const SavedPlace& place, const std::string& session) {
 /// Hears as much as the loop has room for; the rest waits in DDS.
 void FleetTalk::hear() {
   const auto take = [this](const dds::FleetPlace& place, const dds::FleetSession* about) {
+    // A keeper tells this drive again.
+    if (newest_told_ && place.session == newest_told_->session) return;
     if (place.visit) {
       if (const auto same = others_.same_place(place)) {
         heard_.push({same->session, place.frame, {}, {{same->visited, place.visit->frame}}});

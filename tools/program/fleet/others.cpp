@@ -77,6 +77,15 @@ std::optional<std::uint32_t> Others::hear(const dds::FleetPlace& place,
   return session->index;
 }
 
+std::uint32_t Others::resume(const Names& names, const Before& before) {
+  const auto index = static_cast<std::uint32_t>(names_.size());
+  names_.push_back(names);
+  taken_ += before.places;
+  sessions_[names.began_ns] = {names,        index,           false,           before.places,
+                               before.frame, before.first_ns, before.newest_ns};
+  return index;
+}
+
 std::optional<Others::SamePlace> Others::same_place(const dds::FleetPlace& place) const {
   const auto has = [this](std::int64_t session, std::uint64_t frame) {
     const auto found = sessions_.find(session);

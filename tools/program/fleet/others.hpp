@@ -30,6 +30,22 @@ class Others {
   [[nodiscard]] std::optional<std::uint32_t> hear(const dds::FleetPlace& place,
                                                   const dds::FleetSession* about);
 
+  /// Names that a session came with, fit to be printed.
+  struct Names {
+    std::string robot;
+    std::string session;
+    std::int64_t began_ns = 0;
+  };
+  /// What is known of a session from before this program began: as if it had been heard.
+  struct Before {
+    std::uint64_t places = 0;   ///< 1 or more
+    std::uint64_t frame = 0;    ///< of the last
+    std::int64_t first_ns = 0;  ///< of its drive
+    std::int64_t newest_ns = 0;
+  };
+  /// @return its index, as `hear` gives them
+  std::uint32_t resume(const Names& names, const Before& before);
+
   /// A place and one that it is a visit of, both taken in.
   struct SamePlace {
     std::uint32_t session;
@@ -38,12 +54,6 @@ class Others {
   /// @param place that says it is a visit. @return nothing where one of the two was not taken in
   [[nodiscard]] std::optional<SamePlace> same_place(const dds::FleetPlace& place) const;
 
-  /// Names that a session came with, fit to be printed.
-  struct Names {
-    std::string robot;
-    std::string session;
-    std::int64_t began_ns = 0;
-  };
   [[nodiscard]] const Names& names(std::uint32_t session) const { return names_[session]; }
 
   /// What a person should know, one line each, once.

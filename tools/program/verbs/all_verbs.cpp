@@ -18,7 +18,8 @@ std::vector<Verb> all_verbs(ExperimentRunner run_experiment) {
           stills_verb(),
           camera_verb(),
           bag_verb(),
-          map_verb()};
+          map_verb(),
+          keep_verb()};
 }
 
 }  // namespace seqloop::program

@@ -26,6 +26,7 @@ using ExperimentRunner =
 [[nodiscard]] Verb camera_verb();
 [[nodiscard]] Verb bag_verb();
 [[nodiscard]] Verb map_verb();
+[[nodiscard]] Verb keep_verb();
 
 /// All that the program offers.
 [[nodiscard]] std::vector<Verb> all_verbs(ExperimentRunner run_experiment);

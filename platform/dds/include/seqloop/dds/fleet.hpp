@@ -65,8 +65,11 @@ class Fleet {
   /// Takes one place that others have published, oldest first of each session.
   /// @param hear what it is given is valid during the call; the session: null where nothing was
   /// said
+  /// @param gone told of each session that nobody tells any more, on the way to the place; empty:
+  /// nobody asks
   /// @return whether there was one
-  bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear);
+  bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear,
+            const std::function<void(std::int64_t session)>& gone = {});
 
   /// Robots that are heard.
   [[nodiscard]] std::uint32_t others() const noexcept;

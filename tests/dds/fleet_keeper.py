@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""A keeper that is killed again and again loses nothing, and serves who comes late: the real program.
+
+Usage: fleet_keeper.py SEQLOOP TIMES
+"""
+import pathlib
+import random
+import signal
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from dds import fleet, ros  # noqa: E402
+from dds.fleet import Robot, drive, expect, loops, way  # noqa: E402
+
+SEED = 11
+FRAMES = 1000  # of a drive: five seconds
+
+
+class Keeper:
+    def __init__(self, seqloop: str, work: pathlib.Path) -> None:
+        self.said = work / "keeper.said"
+        with self.said.open("a") as said:
+            self.process = subprocess.Popen([seqloop, "keep", "--map", work / "kept.seqloop", "--fleet", "test",
+                                             "--save-every-s", "0.05"], stderr=said, env=ros.environment())
+
+    def kill(self) -> None:
+        if self.process.poll() is not None:
+            sys.exit("the keeper ended by itself: " + self.said.read_text()[-300:])
+        self.process.kill()
+        self.process.wait()
+
+    def end(self) -> None:
+        self.process.send_signal(signal.SIGTERM)
+        expect(self.process.wait(timeout=60) == 0, "the keeper ends when it is asked to")
+
+
+def places(path: pathlib.Path) -> dict[tuple[int, int], bytes]:
+    """@return of each session, by when it began, and frame: time and bytes"""
+    found = {}
+    base = sqlite3.connect(f"file:{path}?mode=ro", uri=True)
+    size = base.execute("SELECT place_bytes FROM map").fetchone()[0]
+    for began, count, records, content in base.execute(
+            "SELECT began_ns, count, records, block.places FROM block JOIN session ON session = session.id"):
+        for i in range(count):
+            _, frame, time_ns = struct.unpack_from("<QQq", records, 24 * i)
+            if (began, frame) in found:
+                sys.exit(f"{path} has frame {frame} of {began} twice")
+            found[began, frame] = struct.pack("<q", time_ns) + content[size * i:size * (i + 1)]
+    return found
+
+
+def main(seqloop: str, times: int, work: pathlib.Path) -> None:
+    print(f"seed {SEED}")
+    chance = random.Random(SEED)
+    seen = way(1200)
+    keeper = Keeper(seqloop, work)
+    kills, rounds = 0, 0
+    while kills < times:
+        robots = [Robot(seqloop, work, f"{name}{rounds}",
+                        drive(work, f"{name}{rounds}", seen[:FRAMES], 2 * rounds + i), f"{name}{rounds}.seqloop")
+                  for i, name in enumerate(("anna", "bert"))]
+        # The last third of their drive they have to tell it what it has missed.
+        end = time.monotonic() + FRAMES / fleet.RATE * 2 / 3
+        while kills < times and time.monotonic() < end:
+            time.sleep(chance.uniform(0.02, 0.4))
+            keeper.kill()
+            keeper = Keeper(seqloop, work)
+            kills += 1
+        for robot in robots:
+            robot.end()
+        rounds += 1
+    time.sleep(1.0)
+    keeper.end()
+    kept = places(work / "kept.seqloop")
+    told = {}
+    for path in work.glob("*[0-9].seqloop"):
+        told |= places(path)
+    missing = [key for key in told if key not in kept]
+    expect(len(told) > 1000 and not missing, f"of {len(told)} places none is missing after {kills} kills: "
+           f"{len(missing)}, {missing[:3]}")
+    expect(kept == told, "each is kept once, to the byte")
+    base = sqlite3.connect(f"file:{work / 'kept.seqloop'}?mode=ro", uri=True)
+    expect(base.execute("SELECT count(*) FROM session").fetchone()[0] == 2 * rounds, "no session was begun twice")
+    base.close()
+    checked = subprocess.run([seqloop, "map", "check", work / "kept.seqloop"], capture_output=True, text=True)
+    expect(checked.returncode == 0, "the map's check finds nothing: " + checked.stdout + checked.stderr)
+
+    # All robots have gone.
+    keeper = Keeper(seqloop, work)
+    late = Robot(seqloop, work, "late", drive(work, "late", seen[:500], 99), "late.seqloop", "--fleet-places", "100000")
+    lines = late.end()
+    sessions = len({began for began, _ in kept})
+    expect(late.counted() == (len(kept), sessions), f"who comes late gets all from the keeper: {late.counted()}")
+    found = [answer for line in lines for answer in line["fleet"] if answer["status"] == "match"]
+    expect(len(found) > 100 and all(answer["robot"][:4] in ("anna", "bert") for answer in found),
+           f"and finds loops with them: {len(found)}")
+    time.sleep(1.0)
+    keeper.end()
+    expect(places(work / "late.seqloop").items() <= places(work / "kept.seqloop").items(),
+           "its drive is kept, too")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+#include "program/fleet/keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "program/process/say.hpp"
+
+namespace seqloop::program {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+constexpr auto round_time = 20ms;
+constexpr auto patience = 1s;
+
+// A place's number is its session's in the file, times this, and its frame: sessions grow side by
+// side, and nobody has to remember which place is which.
+constexpr std::uint64_t frames_of_a_session = std::uint64_t{1} << 32U;
+
+// Places that wait to be saved; more wait in DDS.
+constexpr std::size_t most_waiting = 16'384;
+
+// Links of a place, on average: what many robots tell is bounded.
+constexpr std::size_t links_a_place = 8;
+
+// What all places of a session have in common is said again with every so many.
+constexpr std::uint64_t said_every = 64;
+
+// A robot tells it from this probability on.
+constexpr double likely = 0.9;
+
+std::uint64_t number_of(std::int64_t session, std::uint64_t frame) {
+  return static_cast<std::uint64_t>(session) * frames_of_a_session + frame;
+}
+
+}  // namespace
+
+Keeper::Keeper(std::filesystem::path file, const FleetSettings& settings,
+               const dds::Participant& participant, double save_every_s)
+    : path_(std::move(file)),
+      settings_(settings),
+      save_every_(save_every_s),
+      wire_(participant, settings.name, settings.places),
+      saved_(std::chrono::steady_clock::now()) {
+  std::error_code error;
+  if (std::filesystem::file_size(path_, error) == 0 || error) return;
+  file_ = sqlite::MapFile::open(path_, std::nullopt);
+  know_sessions();
+}
+
+/// Makes the file, of the form that the first robot tells.
+void Keeper::open(const dds::FleetSession& about) {
+  file_ = sqlite::MapFile::open(path_, sqlite::MapForm{about.form, about.describer,
+                                                       about.descriptor_size, about.place_bytes});
+  know_sessions();
+}
+
+/// Goes on where the file ends.
+void Keeper::know_sessions() {
+  const sqlite::MapForm& form = file_->form();
+  const dds::FleetSession own{robot_name(settings_),
+                              {},
+                              form.form,
+                              form.describer,
+                              static_cast<std::uint32_t>(form.descriptor_size),
+                              static_cast<std::uint32_t>(form.place_bytes)};
+  std::map<std::int64_t, Others::Before> before;
+  std::vector<std::int64_t> not_growing;
+  for (const sqlite::SessionFacts& facts : file_->sessions()) {
+    Session session;
+    session.id = facts.id;
+    session.frames = facts.frames;
+    session.gone = true;
+    const Json kept = Json::parse(facts.settings, nullptr, false);
+    session.grows = kept.is_object() && kept.contains("robot") && kept.contains("session");
+    session.names = {session.grows ? kept.value("robot", "") : robot_name(settings_),
+                     session.grows ? kept.value("session", "") : facts.name, facts.began_ns};
+    if (!session.grows) not_growing.push_back(facts.began_ns);
+    sessions_.push_back(std::move(session));
+  }
+  others_.emplace(own, not_growing, most_fleet_places);
+  file_->read([&](const sqlite::PlaceBlock& block) {
+    const auto session = std::ranges::find(sessions_, block.session, &Session::id);
+    if (session == sessions_.end()) return;
+    if (!session->grows) {
+      for (const sqlite::PlaceRecord& record : block.records) {
+        earlier_[record.number] = {session->names.began_ns, record.frame};
+      }
+      return;
+    }
+    Others::Before& its = before[block.session];
+    if (its.places == 0) its.first_ns = block.records.front().time_ns;
+    its.places += block.records.size();
+    its.frame = block.records.back().frame;
+    its.newest_ns = block.records.back().time_ns;
+  });
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    const auto its = before.find(sessions_[i].id);
+    if (its == before.end()) continue;
+    others_->resume(sessions_[i].names, its->second);
+    heard_as_.emplace_back(i);
+  }
+  file_->read_links([this](const sqlite::SavedLink& link) {
+    if (link.place) links_.emplace(*link.place, link.other);
+  });
+}
+
+void Keeper::round(const std::function<bool()>& stop) {
+  tell(stop);
+  hear();
+  if (std::chrono::steady_clock::now() - saved_ >= save_every_) save();
+  wire_.wait(round_time);
+}
+
+void Keeper::hear() {
+  const auto hear = [this](const dds::FleetPlace& place, const dds::FleetSession* about) {
+    this->hear(place, about);
+  };
+  const auto gone = [this](std::int64_t began) {
+    for (Session& session : sessions_) session.gone |= session.names.began_ns == began;
+  };
+  while (waiting_ < most_waiting && wire_.take(hear, gone)) {
+  }
+  if (!others_) return;
+  for (std::string& line : others_->news()) news_.push_back(std::move(line));
+}
+
+void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) {
+  if (!file_) {
+    if (about == nullptr) return;
+    open(*about);
+  }
+  if (place.visit) {
+    const auto same = others_->same_place(place);
+    if (!same || links_.size() >= links_a_place * others_->places()) return;
+    Session& session = begin(same->session);
+    const std::uint64_t number = number_of(session.id, place.frame);
+    const std::uint64_t other = number_of(begin(same->visited).id, place.visit->frame);
+    if (!links_.emplace(number, other).second) return;
+    session.links.push_back({session.id, place.frame, number, other, likely});
+    ++waiting_;
+    return;
+  }
+  if (place.frame >= frames_of_a_session) return;
+  const auto index = others_->hear(place, about);
+  if (!index) return;
+  Session& session = begin(*index);
+  session.gone = false;
+  if (session.closed) return;
+  session.records.push_back({number_of(session.id, place.frame), place.frame, place.time_ns});
+  session.bytes.insert(session.bytes.end(), place.bytes.begin(), place.bytes.end());
+  session.frames = place.frame + 1;
+  ++waiting_;
+}
+
+/// A session of the file for one that is heard. Where the disk is full, this waits: what is told
+/// meanwhile waits in DDS.
+Keeper::Session& Keeper::begin(std::uint32_t index) {
+  if (heard_as_.size() <= index) heard_as_.resize(index + 1);
+  if (heard_as_[index]) return sessions_[*heard_as_[index]];
+  // Begun before, and killed before anything of it was saved.
+  const std::int64_t began = others_->names(index).began_ns;
+  for (std::size_t i = 0; i < sessions_.size(); ++i) {
+    if (!sessions_[i].grows || sessions_[i].names.began_ns != began) continue;
+    heard_as_[index] = i;
+    return sessions_[i];
+  }
+  Session session;
+  session.names = others_->names(index);
+  const std::string title = session.names.robot + " " + session.names.session;
+  const auto known = file_->sessions();
+  std::string name = title;
+  for (int more = 2; std::ranges::find(known, name, &sqlite::SessionFacts::name) != known.end();) {
+    name = fmt::format("{}-{}", title, more++);
+  }
+  const Json settings{{"robot", session.names.robot}, {"session", session.names.session}};
+  session.id = file_->begin_session(name, session.names.began_ns, settings.dump());
+  news_.push_back(fmt::format("what robot '{}' tells of session '{}' is kept as '{}'",
+                              session.names.robot, session.names.session, name));
+  heard_as_[index] = sessions_.size();
+  sessions_.push_back(std::move(session));
+  return sessions_.back();
+}
+
+/// All that waits; what the disk does not take goes on waiting.
+void Keeper::save() {
+  saved_ = std::chrono::steady_clock::now();
+  try {
+    for (Session& session : sessions_) {
+      if (session.records.empty() && session.links.empty()) continue;
+      try {
+        file_->save(session.id, {.frames = session.frames,
+                                 .records = session.records,
+                                 .places = session.bytes,
+                                 .links = session.links});
+      } catch (const std::invalid_argument&) {
+        session.closed = true;
+        news_.push_back(
+            fmt::format("robot '{}', session '{}': no more of it is kept: a drive was "
+                        "added to the map behind it",
+                        session.names.robot, session.names.session));
+      }
+      waiting_ -= session.records.size() + session.links.size();
+      session.records.clear();
+      session.bytes.clear();
+      session.links.clear();
+    }
+    if (std::exchange(failing_, false)) news_.emplace_back("what was told is saved again");
+  } catch (const sqlite::SaveError& error) {
+    if (!std::exchange(failing_, true)) news_.emplace_back(error.what());
+  }
+}
+
+/// What nobody else tells. Work: the file, once, where there is any of that.
+void Keeper::tell(const std::function<bool()>& stop) {
+  const auto wanted = [](const Session& session) {
+    return session.gone && session.untold < session.frames;
+  };
+  if (std::ranges::none_of(sessions_, wanted)) return;
+  save();
+  if (failing_) return;
+  std::map<std::int64_t, Session*> telling;
+  for (Session& session : sessions_) {
+    if (wanted(session)) telling[session.id] = &session;
+  }
+  const sqlite::MapForm& form = file_->form();
+  const auto size = static_cast<std::size_t>(form.place_bytes);
+  bool going = true;
+  std::map<std::int64_t, std::uint64_t> told;
+  file_->read([&](const sqlite::PlaceBlock& block) {
+    const auto found = telling.find(block.session);
+    if (found == telling.end()) return;
+    const Session& session = *found->second;
+    const dds::FleetSession about{session.names.robot,
+                                  session.names.session,
+                                  form.form,
+                                  form.describer,
+                                  static_cast<std::uint32_t>(form.descriptor_size),
+                                  static_cast<std::uint32_t>(form.place_bytes)};
+    for (std::size_t i = 0; i < block.records.size() && going; ++i) {
+      const sqlite::PlaceRecord& record = block.records[i];
+      if (record.frame < session.untold) continue;
+      const bool says = told[block.session]++ % said_every == 0;
+      going = publish({session.names.began_ns,
+                       record.frame,
+                       record.time_ns,
+                       block.places.subspan(i * size, size),
+                       {}},
+                      says ? &about : nullptr, stop);
+    }
+  });
+  file_->read_links([&](const sqlite::SavedLink& link) {
+    if (!going || !link.place || !telling.contains(link.session)) return;
+    const auto place = told_as(*link.place);
+    const auto other = told_as(link.other);
+    if (place && other)
+      going = publish({place->session, place->frame, 0, {}, other}, nullptr, stop);
+  });
+  if (!going) return;
+  for (const auto& [id, session] : telling) session->untold = session->frames;
+}
+
+/// @return false where it is to stop
+bool Keeper::publish(const dds::FleetPlace& place, const dds::FleetSession* about,
+                     const std::function<bool()>& stop) {
+  while (!stop()) {
+    if (wire_.publish(place, about)) return true;
+  }
+  return false;
+}
+
+/// What a place of the file is to others.
+std::optional<dds::FleetVisit> Keeper::told_as(std::uint64_t number) const {
+  if (const auto found = earlier_.find(number); found != earlier_.end()) return found->second;
+  const auto id = static_cast<std::int64_t>(number / frames_of_a_session);
+  const auto session = std::ranges::find(sessions_, id, &Session::id);
+  if (session == sessions_.end() || !session->grows) return std::nullopt;
+  return dds::FleetVisit{session->names.began_ns, number % frames_of_a_session};
+}
+
+std::string Keeper::end() {
+  if (!file_) return "nothing was heard, and nothing is kept";
+  save();
+  if (wire_.others() > 0) wire_.flush(patience);
+  std::uint64_t places = 0;
+  const auto sessions = file_->sessions();
+  for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
+  return fmt::format("{} places of {} sessions are kept", places, sessions.size());
+}
+
+}  // namespace seqloop::program
