@@ -19,7 +19,7 @@ from dds import fleet, ros  # noqa: E402
 from dds.fleet import Robot, drive, expect, loops, way  # noqa: E402
 
 SEED = 11
-FRAMES = 1000  # of a drive: five seconds
+FRAMES = 700  # of a drive: three and a half seconds
 
 
 class Keeper:
@@ -93,7 +93,7 @@ def main(seqloop: str, times: int, work: pathlib.Path) -> None:
 
     # All robots have gone.
     keeper = Keeper(seqloop, work)
-    late = Robot(seqloop, work, "late", drive(work, "late", seen[:500], 99), "late.seqloop", "--fleet-places", "100000")
+    late = Robot(seqloop, work, "late", drive(work, "late", seen[:350], 99), "late.seqloop", "--fleet-places", "100000")
     lines = late.end()
     sessions = len({began for began, _ in kept})
     expect(late.counted() == (len(kept), sessions), f"who comes late gets all from the keeper: {late.counted()}")
