@@ -65,12 +65,13 @@ class Network:
 
 
 class Robot:
-    def __init__(self, seqloop: str, work: pathlib.Path, robot: int, namespace: str | None, fleet: bool) -> None:
+    def __init__(self, seqloop: str, work: pathlib.Path, robot: int, namespace: str | None, fleet: bool,
+                 *more: str) -> None:
         words = [] if namespace is None else ["ip", "netns", "exec", namespace]
         words += [seqloop, "run", "--source", work / f"{robot}.npy", "--map", work / f"{robot}.seqloop", "--fps",
                   str(RATE), "--pace", "live", "--summary", work / f"{robot}.json"]
         if fleet:
-            words += ["--fleet", "net", "--robot", str(robot)]
+            words += ["--fleet", "net", "--robot", str(robot), *more]
         self.summary = work / f"{robot}.json"
         self.said = (work / f"{robot}.said").open("w")
         self.process = subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=self.said,

@@ -14,12 +14,16 @@ void add_fleet_options(OptionTable& options, FleetSettings& settings) {
                "with theirs; with --map [alone]");
   options.count("fleet-places", settings.places,
                 "room for places of other robots, beside --max-places [20000]");
+  options.number("fleet-kbps", settings.kbps,
+                 "kilobits of places that are told a second; more waits, and beyond --fleet-places "
+                 "the oldest is left out [0: no limit]");
   options.text("robot", settings.robot, "this robot's name among others [the machine's]");
 }
 
 void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults) {
   if (settings.name.empty()) {
     if (!settings.robot.empty()) faults.push_back({"robot", "there are no others", "--fleet NAME"});
+    if (settings.kbps != 0.0) faults.push_back({"fleet-kbps", "nothing is told", "--fleet NAME"});
     return;
   }
   if (!map) faults.push_back({"fleet", "places are told as they are saved", "add --map FILE"});
@@ -27,6 +31,7 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
     faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
                       "leave one of them out"});
   }
+  if (!(settings.kbps >= 0.0)) faults.push_back({"fleet-kbps", "it must be 0 (no limit) or more"});
   if (settings.places == 0 || settings.places > most_fleet_places) {
     faults.push_back({"fleet-places", "it must be 1 to " + std::to_string(most_fleet_places)});
   }

@@ -13,6 +13,7 @@ struct FleetSettings {
   std::string name;             ///< of the fleet; empty: alone
   std::string robot;            ///< name of this one; empty: the machine's
   std::size_t places = 20'000;  ///< room for those of others
+  double kbps = 0.0;            ///< kilobits that this one tells a second; 0: all
 };
 
 /// Places that there may be room for.

@@ -35,6 +35,9 @@ dds::FleetSession about_of(const FleetSettings& settings, const PlaceForm& form)
           static_cast<std::uint32_t>(form.place_bytes)};
 }
 
+// Of a message beside a descriptor, on the wire: with the headers of all layers.
+constexpr std::size_t message_bytes = 200;
+
 /// Thrown to stop reading a file.
 struct Ending : std::exception {};
 
@@ -49,6 +52,7 @@ FleetTalk::FleetTalk(const FleetSettings& settings, const dds::Participant& part
       wire_(participant, settings.name, settings.places),
       others_(about_, earlier_, settings.places),
       heard_(queued, map.form().place_bytes),
+      allowance_(settings.kbps),
       thread_([this] { work(); }) {
   map.when_saved([saved = saved_](const SavedPlace& place) { saved->keep(place); });
 }
@@ -90,8 +94,11 @@ void FleetTalk::work() {
   const auto until = std::chrono::steady_clock::now() + patience_at_end;
   while (std::chrono::steady_clock::now() < until) {
     tell_newest();
-    const std::scoped_lock lock(saved_->mutex);
-    if (saved_->waiting.empty()) break;
+    {
+      const std::scoped_lock lock(saved_->mutex);
+      if (saved_->waiting.empty()) break;
+    }
+    wire_.wait(round_time);
   }
   const auto left = until - std::chrono::steady_clock::now();
   if (left > 0s && wire_.others() > 0) wire_.flush(left);
@@ -101,9 +108,10 @@ void FleetTalk::work() {
 void FleetTalk::tell_earlier() {
   map_->read_saved([this](const SavedPlace& place) {
     if (std::ranges::find(earlier_, place.began_ns) == earlier_.end()) return;
-    while (!tell(place, std::string(place.session))) {
+    while (!tell(place)) {
       if (ending_) throw Ending();
       hear();
+      wire_.wait(round_time);
     }
     if (told_ % said_every == 0) hear();
   });
@@ -112,17 +120,17 @@ void FleetTalk::tell_earlier() {
 void FleetTalk::tell_newest() {
   while (true) {
     Waiting place;
-    std::string name;
     {
       const std::scoped_lock lock(saved_->mutex);
       if (saved_->waiting.empty()) return;
       place = std::move(saved_->waiting.front());
       saved_->waiting.pop_front();
-      name = saved_->session;
+      if (running_.empty()) running_ = saved_->session;
     }
     SavedPlace whole = place.place;
+    whole.session = running_;
     whole.bytes = place.bytes;
-    if (!tell(whole, name)) {
+    if (!tell(whole)) {
       const std::scoped_lock lock(saved_->mutex);
       saved_->waiting.push_front(std::move(place));
       return;
@@ -136,28 +144,36 @@ void FleetTalk::tell_found() {
   while (const Found* const found = found_.front()) {
     if (!newest_told_ || found->frame > newest_told_->frame) return;
     const dds::FleetVisit visited{others_.names(found->session).began_ns, found->session_frame};
-    if (!wire_.publish({newest_told_->session, found->frame, 0, {}, visited}, nullptr)) return;
+    if (!publish({newest_told_->session, found->frame, 0, {}, visited}, nullptr)) return;
     found_.pop();
   }
 }
 
-/// @return false where others are too slow
-bool FleetTalk::tell(const SavedPlace& place, const std::string& session) {
+/// @return false where others are too slow, or enough was told just now
+bool FleetTalk::tell(const SavedPlace& place) {
   if (place.visits) {
     const auto visited = told_as_.find(*place.visits);
     // What has gone from the map was not told.
     if (visited == told_as_.end()) return true;
-    return wire_.publish({place.began_ns, place.frame, 0, {}, visited->second}, nullptr);
+    return publish({place.began_ns, place.frame, 0, {}, visited->second}, nullptr);
   }
-  if (std::exchange(session_, place.began_ns) != place.began_ns) of_session_ = 0;
-  about_.name = session;
-  if (!wire_.publish({place.began_ns, place.frame, place.time_ns, place.bytes, {}},
-                     of_session_ % said_every == 0 ? &about_ : nullptr)) {
+  if (std::exchange(session_, place.began_ns) != place.began_ns) {
+    of_session_ = 0;
+    about_.name = place.session;
+  }
+  if (!publish({place.began_ns, place.frame, place.time_ns, place.bytes, {}},
+               of_session_ % said_every == 0 ? &about_ : nullptr)) {
     return false;
   }
   told_as_[place.number] = {place.began_ns, place.frame};
   ++told_;
   ++of_session_;
+  return true;
+}
+
+bool FleetTalk::publish(const dds::FleetPlace& place, const dds::FleetSession* about) {
+  if (!allowance_.left() || !wire_.publish(place, about)) return false;
+  allowance_.spend(place.bytes.size() + message_bytes);
   return true;
 }
 

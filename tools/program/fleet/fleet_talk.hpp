@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "program/fleet/allowance.hpp"
 #include "program/fleet/fleet_settings.hpp"
 #include "program/fleet/others.hpp"
 #include "program/fleet/place_queue.hpp"
@@ -88,7 +89,8 @@ class FleetTalk {
   void tell_earlier();
   void tell_newest();
   void tell_found();
-  bool tell(const SavedPlace& place, const std::string& session);
+  bool tell(const SavedPlace& place);
+  bool publish(const dds::FleetPlace& place, const dds::FleetSession* about);
   void hear();
   void pass_on(std::string line);
 
@@ -101,7 +103,9 @@ class FleetTalk {
   PlaceQueue heard_;
   live::ReturnQueue<Found, 1024> found_;
 
-  std::uint64_t told_ = 0;        // the thread's
+  Allowance allowance_;  // the thread's, as what follows
+  std::string running_;  // name of the running session
+  std::uint64_t told_ = 0;
   std::uint64_t of_session_ = 0;  // told of the session that was told of last
   std::int64_t session_ = 0;
   std::optional<dds::FleetVisit> newest_told_;                  // of the running session
