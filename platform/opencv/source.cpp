@@ -22,7 +22,7 @@ std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path, Sour
       if (has_image_extension(path))
         throw SetupError(
             Fault{name, "is a single picture", "name the folder that holds the drive"});
-      return std::make_unique<VideoSource>(path, options.gray);
+      return std::make_unique<VideoSource>(path, options.gray, std::move(options.mjpg));
     case std::filesystem::file_type::character:
       throw SetupError(Fault{name, "is a device, not a recording",
                              "record the drive first and name the video file or image folder"});

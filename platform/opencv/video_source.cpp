@@ -5,11 +5,15 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "opencv/detail/avi_pictures.hpp"
+#include "opencv/detail/picture_file.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
 #include "opencv/detail/video_file.hpp"
@@ -42,7 +46,8 @@ std::vector<std::uint8_t> head_of(const std::filesystem::path& file) {
 
 class VideoSource::Impl {
  public:
-  Impl(const std::filesystem::path& file, bool gray) : gray_(gray) {
+  Impl(const std::filesystem::path& file, bool gray, std::unique_ptr<PictureDecoder> mjpg)
+      : mjpg_(std::move(mjpg)), gray_(gray) {
     const QuietLog quiet;
     const std::string name = file.string();
     std::error_code error;
@@ -56,8 +61,9 @@ class VideoSource::Impl {
         throw SetupError(
             Fault{name, "is not a video that OpenCV can read",
                   "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
-      read_properties(tells_frame_rate(head_of(file)));
-      pending_ = read();  // some files open well and hold no frame
+      const std::vector<std::uint8_t> head = head_of(file);
+      read_properties(tells_frame_rate(head));
+      pending_ = begin_jpeg(file, head) || read();  // some files open well and hold no frame
     } catch (const cv::Exception& failure) {
       throw SetupError(Fault{name, "is not a video that OpenCV can read (" + failure.err + ")"});
     }
@@ -69,7 +75,8 @@ class VideoSource::Impl {
     frame.index = next_;
     try {
       if (!pending_ && !ended_) ended_ = !read();
-      if (!ended_) frame.image = view(gray_ && picture_.channels() == 3 ? to_gray() : picture_);
+      if (!ended_ && !pictures_)
+        frame.image = view(gray_ && picture_.channels() == 3 ? to_gray() : picture_);
     } catch (...) {  // the backend gave up
       ended_ = true;
     }
@@ -77,7 +84,10 @@ class VideoSource::Impl {
     pending_ = false;
     if (ended_) return Grab::end;
     ++next_;
-    return Grab::frame;
+    if (!pictures_) return Grab::frame;
+    (usable_ ? frame.remark : frame.fault) = damage_;
+    if (usable_) frame.image = image_;
+    return usable_ ? Grab::frame : Grab::unreadable;
   }
 
   [[nodiscard]] std::optional<std::uint64_t> declared() const noexcept { return declared_; }
@@ -102,14 +112,59 @@ class VideoSource::Impl {
     if (count >= 1.0 && count < largest_count) declared_ = static_cast<std::uint64_t>(count);
   }
 
-  /// Decodes into picture_ and moves the clock. @return false at the end
-  [[nodiscard]] bool read() {
+  /// Leaves decoding to mjpg_ where it can. @return whether the first picture is there
+  [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file,
+                                std::span<const std::uint8_t> head) {
+    if (!mjpg_) return false;
+    pictures_ = AviPictures::open(file, head);
+    if (pictures_ && read() && usable_) {
+      capture_->release();
+      first_number_ = pictures_->number();
+      time_s_ = 0.0;
+      return true;
+    }
+    pictures_.reset();  // some cameras send every second line as a picture of its own
+    return false;
+  }
+
+  /// Decodes and moves the clock. @return false at the end
+  [[nodiscard]] bool read() { return pictures_ ? read_jpeg() : read_any(); }
+
+  /// Into image_, or sets why not.
+  [[nodiscard]] bool read_jpeg() {
+    if (!pictures_->next(jpeg_)) return false;
+    time_s_ = static_cast<double>(pictures_->number() - first_number_) / rate_;
+    damage_ = mjpg_->decode({.bytes = jpeg_,
+                             .width = pictures_->width(),
+                             .height = pictures_->height(),
+                             .format = RawFormat::mjpg},
+                            image_);
+    usable_ = damage_.empty() || make_up();
+    return true;
+  }
+
+  /// Decodes a damaged picture as backends do, which make up what is missing: OpenCV's own writer
+  /// loses a few bits in one picture of 50.
+  [[nodiscard]] bool make_up() {
+    const PictureFile seen = look_at(jpeg_);
+    if (!seen.jpeg || !seen.fault.empty() ||
+        seen.width != static_cast<std::uint64_t>(pictures_->width()) ||
+        seen.height != static_cast<std::uint64_t>(pictures_->height()))
+      return false;
+    picture_ = file_codecs().decode(jpeg_, cv::IMREAD_COLOR);
+    if (!picture_.empty()) image_ = view(picture_);
+    return !picture_.empty();
+  }
+
+  /// Into picture_.
+  [[nodiscard]] bool read_any() {
     if (!capture_->read(picture_) || picture_.empty()) return false;
     if (picture_.type() != CV_8UC1 && picture_.type() != CV_8UC3) return false;
     const double stamp = capture_->get(cv::CAP_PROP_POS_MSEC) / 1000.0;
     if (first_) {
       first_ = false;
       start_s_ = std::isfinite(stamp) ? stamp : 0.0;
+      time_s_ = 0.0;
       return true;
     }
     const double since_start = stamp - start_s_;
@@ -123,6 +178,13 @@ class VideoSource::Impl {
     return gray_picture_;
   }
 
+  std::unique_ptr<PictureDecoder> mjpg_;
+  std::optional<AviPictures> pictures_;  ///< where OpenCV does not decode
+  std::vector<std::uint8_t> jpeg_;
+  Image image_;              ///< of pictures_, in mjpg_'s memory or picture_'s
+  std::string_view damage_;  ///< likewise
+  bool usable_ = false;      ///< all the same
+  std::uint64_t first_number_ = 0;
   std::unique_ptr<cv::VideoCapture> capture_ = file_codecs().video();
   cv::Mat picture_;
   cv::Mat gray_picture_;
@@ -138,8 +200,9 @@ class VideoSource::Impl {
   std::optional<std::uint64_t> declared_;
 };
 
-VideoSource::VideoSource(const std::filesystem::path& file, bool gray)
-    : impl_(std::make_unique<Impl>(file, gray)) {}
+VideoSource::VideoSource(const std::filesystem::path& file, bool gray,
+                         std::unique_ptr<PictureDecoder> mjpg)
+    : impl_(std::make_unique<Impl>(file, gray, std::move(mjpg))) {}
 
 VideoSource::~VideoSource() = default;
 

@@ -72,8 +72,9 @@ class MjpgDecoder::Impl {
     } else if (header.width != raw.width || header.height != raw.height) {
       fault_.assign({"the JPEG picture is "});
       append({header.width, header.height});
-      fault_.append(", but the camera agreed to ");
+      fault_.append(", but ");
       append({raw.width, raw.height});
+      fault_.append(" was declared");
     } else if (static_cast<std::uint64_t>(raw.width) * static_cast<std::uint64_t>(raw.height) >
                most_pixels) {
       fault_.assign({"the JPEG picture has more than 200 million pixels"});

@@ -203,9 +203,9 @@ TEST(MjpgDecoder, WhatIsWrongIsSaid) {
   expect_fault({jpeg.begin() + 2, jpeg.end()}, 64, 48, "does not begin with FF D8");
   expect_fault({jpeg.begin(), jpeg.begin() + 100}, 64, 48, "ends before its data");
   expect_fault({jpeg.begin(), jpeg.end() - 100}, 64, 48, "Premature end of JPEG file");
-  expect_fault(jpeg, 320, 240, "is 64x48, but the camera agreed to 320x240");
-  expect_fault(jpeg, 48, 64, "is 64x48, but the camera agreed to 48x64");
-  expect_fault(jpeg, -1, 48, "is 64x48, but the camera agreed to 0x48");
+  expect_fault(jpeg, 320, 240, "is 64x48, but 320x240 was declared");
+  expect_fault(jpeg, 48, 64, "is 64x48, but 48x64 was declared");
+  expect_fault(jpeg, -1, 48, "is 64x48, but 0x48 was declared");
   expect_fault(jpeg_of(textured(64, 48), {cv::IMWRITE_JPEG_PROGRESSIVE, 1}), 64, 48, "progressive");
 
   const std::size_t frame = segment(jpeg, 0xc0);
@@ -215,7 +215,7 @@ TEST(MjpgDecoder, WhatIsWrongIsSaid) {
     return bytes;
   };
   expect_fault(changed(frame + 4, 12), 64, 48, "8 bits");
-  expect_fault(changed(frame + 5, 0xff), 64, 48, "is 64x65328, but the camera agreed to 64x48");
+  expect_fault(changed(frame + 5, 0xff), 64, 48, "is 64x65328, but 64x48 was declared");
   expect_fault(changed(frame + 6, 0), 64, 48, "does not say its size");
   expect_fault(changed(frame + 9, 4), 64, 48, "three colours");
   expect_fault(changed(frame + 1, 0xc9), 64, 48, "arithmetically");

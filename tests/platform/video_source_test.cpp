@@ -8,6 +8,7 @@
 #include "expect_setup_error.hpp"
 #include "platform/pictures.hpp"
 #include "seqloop/opencv/silence.hpp"
+#include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
 namespace seqloop::opencv {
 namespace {
@@ -58,19 +59,105 @@ TEST_F(VideoSourceTest, HandsOverEveryFrameWithItsTime) {
   }
 }
 
+/// To grey pictures of half the size.
+std::unique_ptr<PictureDecoder> small_and_gray() {
+  return std::make_unique<turbojpeg::MjpgDecoder>(
+      PictureNeeds{.width = 32, .height = 24, .gray_is_enough = true});
+}
+
+TEST_F(VideoSourceTest, LeavesMotionJpegToADecoder) {
+  const TemporaryFolder folder;
+  const auto path = make_video(folder);
+  VideoSource whole(path, true);
+  VideoSource source(path, false, small_and_gray());
+  EXPECT_EQ(source.frame_count(), whole.frame_count());
+  Frame expected;
+  Frame frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_EQ(whole.grab(expected), Grab::frame);
+    ASSERT_EQ(source.grab(frame), Grab::frame);
+    EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+    EXPECT_DOUBLE_EQ(frame.time_s, expected.time_s);
+    EXPECT_EQ(frame.image.width, 32);
+    EXPECT_EQ(frame.image.height, 24);
+    EXPECT_EQ(frame.image.format, PixelFormat::gray8);
+    EXPECT_NEAR(frame.image.data[0], expected.image.data[0], 2);
+  }
+  EXPECT_EQ(source.grab(frame), Grab::end);
+  EXPECT_EQ(source.grab(frame), Grab::end);
+  EXPECT_TRUE(source.notes().empty());
+}
+
+/// Where the n-th picture's chunk begins.
+std::size_t picture_chunk(const std::string& avi, int n) {
+  std::size_t place = avi.find("movi");
+  for (; n >= 0; --n) place = avi.find("00dc", place + 4);
+  return place;
+}
+
+TEST_F(VideoSourceTest, AMomentWithoutAPictureTakesItsTime) {
+  const TemporaryFolder folder;
+  std::string file = test::read_all(make_video(folder));
+  file.insert(picture_chunk(file, 2), std::string("00dc\0\0\0\0", 8));
+  VideoSource source(folder.write("gap.avi", file), false, small_and_gray());
+  Frame frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_EQ(source.grab(frame), Grab::frame);
+    EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+    EXPECT_DOUBLE_EQ(frame.time_s, 0.05 * (i < 2 ? i : i + 1));
+  }
+}
+
+// Bad input: what is no picture ends the video where OpenCV decodes it. Of a damaged one the rest
+// is made up there, without a word.
+TEST_F(VideoSourceTest, TellsOfDamagedPictures) {
+  const TemporaryFolder folder;
+  std::string file = test::read_all(make_video(folder));
+  file[picture_chunk(file, 3) + 8] = 'x';
+  const std::size_t end = file.find("\xff\xd9", picture_chunk(file, 5));
+  file.replace(end - 16, 16, std::string(16, '\xff'));
+  VideoSource source(folder.write("damaged.avi", file), false, small_and_gray());
+  Frame frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_EQ(source.grab(frame), i == 3 ? Grab::unreadable : Grab::frame);
+    EXPECT_DOUBLE_EQ(frame.time_s, 0.05 * i);
+    EXPECT_EQ(frame.image.data == nullptr, i == 3);
+    EXPECT_EQ(says(std::string(frame.fault), "is no JPEG picture"), i == 3);
+    EXPECT_EQ(says(std::string(frame.remark), "the JPEG picture is damaged"), i == 5);
+  }
+  EXPECT_EQ(source.grab(frame), Grab::end);
+}
+
+TEST_F(VideoSourceTest, WhatTheDecoderDoesNotTakeIsLeftToOpenCv) {
+  const TemporaryFolder folder;
+  std::string file = test::read_all(make_video(folder));
+  file.at(file.find("strf") + 8 + 4) = 72;  // the width
+  VideoSource source(folder.write("half.avi", file), false, small_and_gray());
+  Frame frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_EQ(source.grab(frame), Grab::frame);
+    EXPECT_NEAR(frame.time_s, 0.05 * i, 1e-6);
+    EXPECT_EQ(frame.image.format, PixelFormat::bgr8);
+  }
+  EXPECT_EQ(source.grab(frame), Grab::end);
+}
+
 // Bad input: a video that was cut off.
 TEST_F(VideoSourceTest, NotesThatAVideoEndedEarly) {
   const TemporaryFolder folder;
   const std::string whole = test::read_all(make_video(folder));
   const std::size_t cut = whole.find("movi") + 4 + (whole.size() - whole.find("movi")) / 2;
-  VideoSource source(folder.write("cut.avi", whole.substr(0, cut)), false);
-  Frame frame;
-  int count = 0;
-  while (source.grab(frame) == Grab::frame) ++count;
-  EXPECT_GT(count, 0);
-  EXPECT_LT(count, frames);
-  ASSERT_EQ(source.notes().size(), 1U);
-  EXPECT_TRUE(says(source.notes()[0], "ended after " + std::to_string(count) + " of the 12"));
+  const auto path = folder.write("cut.avi", whole.substr(0, cut));
+  for (const bool decoder : {false, true}) {
+    VideoSource source(path, false, decoder ? small_and_gray() : nullptr);
+    Frame frame;
+    int count = 0;
+    while (source.grab(frame) == Grab::frame) ++count;
+    EXPECT_GT(count, 0);
+    EXPECT_LT(count, frames);
+    ASSERT_EQ(source.notes().size(), 1U);
+    EXPECT_TRUE(says(source.notes()[0], "ended after " + std::to_string(count) + " of the 12"));
+  }
 }
 
 /// Little-endian, as AVI files have them.

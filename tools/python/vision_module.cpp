@@ -89,7 +89,7 @@ class PictureDescriber {
         throw SetupError({"source", source.string() + " holds descriptors already",
                           "numpy.load(source), or give an image folder or a video"});
       }
-      const auto drive = program::open_drive(source, "source", settings_);
+      const auto drive = program::open_drive(source, "source", settings_, describer_.get());
       program::Progress silent;
       (void)program::describe_drive(source.string(), *drive, *describer_,
                                     [&rows](std::span<const float> row) {

@@ -15,7 +15,11 @@ cv::Mat PictureScaler::scale(const Image& image) {
   }
   if (!size_.empty() && picture.size() != size_) {
     const bool shrinks = picture.cols >= size_.width && picture.rows >= size_.height;
-    cv::resize(picture, resized_, size_, 0.0, 0.0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    if (shrinks && picture.channels() == 1) {
+      shrinker_.shrink(picture, size_, resized_);
+    } else {
+      cv::resize(picture, resized_, size_, 0.0, 0.0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    }
     picture = resized_;
   }
   return picture;

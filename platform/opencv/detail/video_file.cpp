@@ -2,29 +2,10 @@
 #include "opencv/detail/video_file.hpp"
 
 #include <algorithm>
-#include <string_view>
+
+#include "opencv/detail/little_endian.hpp"
 
 namespace seqloop::opencv {
-namespace {
-
-using Bytes = std::span<const std::uint8_t>;
-
-bool has(Bytes bytes, std::size_t place, std::string_view text) {
-  return place <= bytes.size() && text.size() <= bytes.size() - place &&
-         std::ranges::equal(bytes.subspan(place, text.size()), text, [](std::uint8_t a, char b) {
-           return a == static_cast<std::uint8_t>(b);
-         });
-}
-
-/// @return 0 where the bytes end before
-std::uint32_t little_endian(Bytes bytes, std::size_t place) {
-  if (place > bytes.size() || bytes.size() - place < 4) return 0;
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = value << 8 | bytes[place + i];
-  return value;
-}
-
-}  // namespace
 
 bool tells_frame_rate(Bytes head) noexcept {
   if (has(head, 0, "\xff\xd8\xff")) return false;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "program/drives/camera_decoder.hpp"
 #include "program/drives/file_decoder.hpp"
 #include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
@@ -109,7 +110,7 @@ files::Matrix read_descriptors(const std::filesystem::path& path, Difference dif
 bool is_described(const std::filesystem::path& path) { return path.extension() == ".npy"; }
 
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const std::string& flag,
-                                        const DriveSettings& settings) {
+                                        const DriveSettings& settings, const Describer* describer) {
   if (path.empty()) {
     throw SetupError({flag, "not given", "an image folder, a video, a bag or an .npy file"});
   }
@@ -121,8 +122,11 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
   if (!settings.topic.empty()) say("{}: it is no bag: --topic does not choose here", path.string());
-  return opencv::open_source(path, {.frames_per_second = settings.fps,
-                                    .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false)});
+  return opencv::open_source(
+      path, {.frames_per_second = settings.fps,
+             .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false),
+             .mjpg = describer == nullptr ? nullptr
+                                          : std::make_unique<CameraDecoder>(describer->needs())});
 }
 
 std::int64_t start_ns(const FrameSource* recording) noexcept {

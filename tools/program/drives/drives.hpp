@@ -57,9 +57,12 @@ void check_describer(const DriveSettings& settings, bool training_given);
 
 /// Opens an image folder, a video, a bag or an `.npy` file. Throws SetupError.
 /// @param flag the flag that names the drive, for the message when it was not given
+/// @param describer that is all who looks at the pictures: motion JPEG in an AVI file is then
+///   decoded no further than it needs, as a camera's is; null: pictures are whole and in colour
 [[nodiscard]] std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                                       const std::string& flag,
-                                                      const DriveSettings& settings);
+                                                      const DriveSettings& settings,
+                                                      const Describer* describer = nullptr);
 
 /// Reads an `.npy` file, and brings its rows to unit length where Euclid wants that (Algorithm 1);
 /// says so where one was not. Throws SetupError.

@@ -75,7 +75,9 @@ bool is_live(const std::filesystem::path& source) { return is_camera(source) || 
 void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
                  Clock& clock, Faults& faults) {
   if (!is_live(settings.source)) {
-    collect(faults, [&] { setup.recording = open_drive(settings.source, "source", drive); });
+    collect(faults, [&] {
+      setup.recording = open_drive(settings.source, "source", drive, setup.describer.get());
+    });
     return;
   }
   const bool topic = is_topic(settings.source);
@@ -138,7 +140,9 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     collect(faults, [&] { setup.describer = open_describer(drive); });
   }
   if (given) {
-    collect(faults, [&] { setup.reference = open_drive(settings.reference, "reference", drive); });
+    collect(faults, [&] {
+      setup.reference = open_drive(settings.reference, "reference", drive, setup.describer.get());
+    });
   }
   const bool live_odometry = listens_to_odometry(settings.loops, is_live(settings.source));
   std::function<std::vector<ros::OdometryPose>()> odometry;

@@ -38,7 +38,9 @@ void describe(const DescribeSettings& settings, Faults faults) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
   } else if (!live) {
-    collect(faults, [&] { source = open_drive(settings.source, "source", settings.drive); });
+    collect(faults, [&] {
+      source = open_drive(settings.source, "source", settings.drive, describer.get());
+    });
   }
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out D.npy"});

@@ -13,6 +13,7 @@ struct SourceOptions {
   bool gray = false;                ///< grey pictures are enough
   double frames_per_second = 10.0;  ///< of image folders, > 0; a video brings its own times
   std::unique_ptr<PictureDecoder> jpeg = {};  ///< of image folders, see ImageFolderSource
+  std::unique_ptr<PictureDecoder> mjpg = {};  ///< of videos, see VideoSource
 };
 
 /// Opens an image folder or a video file, whichever the path is.

@@ -8,7 +8,7 @@
 
 namespace seqloop::turbojpeg {
 
-/// Decodes the JPEG pictures of a camera, no further than needed: grey from the luma alone (full
+/// Decodes the JPEG pictures of a camera or a motion JPEG video, no further than needed: grey from the luma alone (full
 /// range), and at the smallest of 1/8, 1/4, 1/2 and 1/1 of the size that is as large as needed both
 /// ways. A reduced picture is not quite the averaged whole: at just the descriptor's size, the
 /// built-in one of Gardens Point's frames moves by 0.06 (day) and 0.09 (night) on average, where
@@ -18,7 +18,7 @@ namespace seqloop::turbojpeg {
 /// kept from frame to frame: the same bytes give the same picture or fault whatever came before.
 ///
 /// Faults are: bytes that are no whole baseline JPEG picture of one or three components; a size
-/// other than the camera agreed to; and whatever libjpeg warns of, because it then makes up the
+/// other than was declared; and whatever libjpeg warns of, because it then makes up the
 /// rest of the picture, save what is harmless. Damage that leaves valid codes behind cannot be
 /// seen. What comes after the picture's end is padding and is not looked at; so are up to 4 bytes
 /// just before the end, which some cameras put there.
@@ -31,9 +31,9 @@ class MjpgDecoder : public PictureDecoder {
   MjpgDecoder& operator=(MjpgDecoder&&) = delete;
   ~MjpgDecoder() override;
 
-  /// @param raw `mjpg`; its width and height are those that the camera agreed to
+  /// @param raw `mjpg`; its width and height are those that were declared
   /// @param image grey or BGR, `needs` says which. Its own memory, taken when the size is new
-  /// Work: at most that of the size agreed to. Allocates: libjpeg does, in chunks whose number does
+  /// Work: at most that of the size declared. Allocates: libjpeg does, in chunks whose number does
   /// not depend on the size, and frees it all.
   [[nodiscard]] std::string_view decode(const RawPicture& raw, Image& image) noexcept override;
 
