@@ -81,16 +81,16 @@ TEST(ChangeRemoval, ShowsTheNetWhatIsLeftOfAPicture) {
 
 TEST(ChangeRemoval, OfNothingIsTheNetItself) {
   const cv::Mat picture = textured(300, 200);
-  const auto net = make_builtin_describer();
+  const auto net = make_builtin_net();
   ChangeRemoval describer =
-      trained(make_builtin_describer(), {textured(40, 30, 5), textured(40, 30, 6)}, 0);
+      trained(make_builtin_net(), {textured(40, 30, 5), textured(40, 30, 6)}, 0);
   EXPECT_EQ(describe(describer, picture), describe(*net, picture));
 }
 
 TEST(ChangeRemoval, OfEverythingMakesTrainingPicturesAlike) {
   std::vector<cv::Mat> pictures;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) pictures.push_back(textured(300, 200, seed));
-  ChangeRemoval describer = trained(make_builtin_describer(), pictures, 3);
+  ChangeRemoval describer = trained(make_builtin_net(), pictures, 3);
   static_cast<void>(describe(describer, pictures[0]));
   const auto first = last_picture(describer);
   for (const cv::Mat& picture : pictures) {

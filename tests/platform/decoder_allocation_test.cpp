@@ -7,6 +7,7 @@
 
 #include "core/allocation_guard.hpp"
 #include "platform/jpegs.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/opencv/raw_decoder.hpp"
 #include "seqloop/turbojpeg/mjpg_decoder.hpp"
 
@@ -55,6 +56,20 @@ TEST(DecoderAllocations, LibjpegsDoNotGrowWithThePicture) {
                   needs.gray_is_enough ? " grey" : "", count);
       EXPECT_LE(count, most);
     }
+  }
+}
+
+TEST(DescriberAllocations, TheBuiltInNeedsNoneForGrayPicturesThatShrink) {
+  if (!AllocationGuard::works()) GTEST_SKIP() << "sanitizers bring a heap of their own";
+  const auto describer = opencv::make_builtin_describer();
+  std::vector<float> values(describer->size());
+  for (const cv::Size& size : {cv::Size(128, 64), cv::Size(640, 480), cv::Size(960, 540)}) {
+    const cv::Mat picture = test::textured(size.width, size.height, 1, CV_8UC1);
+    const Image image = test::image_of(picture);
+    ASSERT_EQ(describer->describe(image, values), Description::good);
+    const AllocationGuard guard;
+    ASSERT_EQ(describer->describe(image, values), Description::good);
+    EXPECT_EQ(guard.count(), 0U) << size;
   }
 }
 

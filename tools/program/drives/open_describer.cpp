@@ -39,6 +39,8 @@ void check_name(const DriveSettings& settings, Faults& faults) {
   }
 }
 
+bool removes(const DriveSettings& settings) { return settings.remove_components.value_or(0) > 0; }
+
 /// Settings that do not go together.
 void check(const DriveSettings& settings, bool training_given, Faults& faults) {
   check_name(settings, faults);
@@ -52,12 +54,11 @@ void check(const DriveSettings& settings, bool training_given, Faults& faults) {
   if (settings.words && kind != "words") {
     faults.push_back({"words", "there is no vocabulary", "--descriptor words"});
   }
-  const bool removes = settings.remove_components.value_or(0) > 0;
-  if (removes && (kind == "patches" || kind == "words")) {
+  if (removes(settings) && (kind == "patches" || kind == "words")) {
     faults.push_back({"remove-components", "works around a net, and " + kind + " have none",
                       "take gradients or a model"});
   }
-  if ((removes || kind == "words") && !training_given) {
+  if ((removes(settings) || kind == "words") && !training_given) {
     faults.push_back({"training", "not given", "--training DRIVE, or several with commas between"});
   }
   if (!settings.training.empty() && kind != "words" && !settings.remove_components) {
@@ -66,14 +67,14 @@ void check(const DriveSettings& settings, bool training_given, Faults& faults) {
   }
 }
 
-/// None for what is no net.
+/// None for what is no net, or needs none.
 std::unique_ptr<opencv::DnnDescriber> open_net(const DriveSettings& settings) {
   const std::string kind = kind_of(settings);
   if (kind == "model") {
     return std::make_unique<opencv::DnnDescriber>(
         with_settings_beside(settings.model, settings.model_flags_given));
   }
-  return kind == "gradients" ? opencv::make_builtin_describer() : nullptr;
+  return kind == "gradients" && removes(settings) ? opencv::make_builtin_net() : nullptr;
 }
 
 std::unique_ptr<Describer> open_patches(const opencv::ModelSettings& model) {
@@ -105,9 +106,10 @@ std::unique_ptr<Describer> make(const DriveSettings& settings,
   refuse(std::move(faults));
 
   if (patches) return patches;
-  const std::size_t components = settings.remove_components.value_or(0);
-  if (components > 0) return learn_removal(std::move(net), training, components);
+  if (removes(settings))
+    return learn_removal(std::move(net), training, *settings.remove_components);
   if (net) return net;
+  if (kind == "gradients") return opencv::make_builtin_describer();
   return std::make_unique<opencv::BagOfWords>(training, settings.words.value_or(usual_words));
 }
 
