@@ -3,12 +3,14 @@
 // Fast DDS, which is given messages as bytes.
 //
 // Usage: fast_end publish TOPIC TYPE reliable|best_effort    messages from standard input
-//        fast_end listen  TOPIC TYPE reliable|best_effort    messages to standard output
-// TOPIC and TYPE as DDS names them. A message is 4 bytes that say how long it is, 4 that say when
-// it is due, in microseconds after the first one, and its CDR. The domain is ROS_DOMAIN_ID.
-// `publish` waits until it is heard, and in the end until all has arrived; it says "heard" on
-// stderr. `listen` says "listening", and "heard" when it has found who publishes; it ends when
-// standard input does, and it has taken all that came.
+//        fast_end listen  TOPIC TYPE reliable|best_effort [PARTITION]    messages to standard
+//        output
+// TOPIC and TYPE as DDS names them. With a partition, the first eight bytes of a message are its
+// key, and what was published before is listened to as well. A message is 4 bytes that say how long
+// it is, 4 that say when it is due, in microseconds after the first one, and its CDR. The domain is
+// ROS_DOMAIN_ID. `publish` waits until it is heard, and in the end until all has arrived; it says
+// "heard" on stderr. `listen` says "listening", and "heard" when it has found who publishes; it
+// ends when standard input does, and it has taken all that came.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -43,10 +45,10 @@ using Bytes = std::vector<std::uint8_t>;
 /// Whatever the bytes are.
 class Raw : public fast::TopicDataType {
  public:
-  explicit Raw(const std::string& name) {
+  Raw(const std::string& name, bool has_key) {
     setName(name.c_str());
     m_typeSize = 16U << 20U;
-    m_isGetKeyDefined = false;
+    m_isGetKeyDefined = has_key;
     auto_fill_type_information(false);
     auto_fill_type_object(false);
   }
@@ -67,7 +69,16 @@ class Raw : public fast::TopicDataType {
   }
   void* createData() override { return new Bytes; }
   void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+  bool getKey(void* data, rtps::InstanceHandle_t* handle, bool) override {
+    const Bytes& bytes = *static_cast<Bytes*>(data);
+    constexpr std::size_t header = 4;
+    if (!m_isGetKeyDefined || bytes.size() < header + key_size) return false;
+    for (std::size_t i = 0; i < 16; ++i) handle->value[i] = i < key_size ? bytes[header + i] : 0;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t key_size = 8;
 };
 
 bool read(void* to, std::size_t size) {
@@ -112,15 +123,25 @@ int publish(fast::DomainParticipant& participant, fast::Topic* topic, bool relia
   return 0;
 }
 
-int listen(fast::DomainParticipant& participant, fast::Topic* topic, bool reliable) {
+int listen(fast::DomainParticipant& participant, fast::Topic* topic, bool reliable,
+           const char* partition) {
   fast::DataReaderQos qos;
   qos.reliability().kind =
       reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
   qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
   qos.history().depth = 100;
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  fast::SubscriberQos where = fast::SUBSCRIBER_QOS_DEFAULT;
+  if (partition != nullptr) {
+    where.partition().push_back(partition);
+    qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
+    qos.history().depth = 5000;
+    qos.resource_limits().max_samples = 20'000;
+    qos.resource_limits().max_instances = 4;
+    qos.resource_limits().max_samples_per_instance = 5000;
+  }
   fast::DataReader* const reader =
-      participant.create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT)->create_datareader(topic, qos);
+      participant.create_subscriber(where)->create_datareader(topic, qos);
   if (reader == nullptr) return 2;
   std::cerr << "listening" << std::endl;
   Bytes message;
@@ -153,7 +174,8 @@ int listen(fast::DomainParticipant& participant, fast::Topic* topic, bool reliab
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 5) return 2;
+  if (count != 5 && count != 6) return 2;
+  const char* const partition = count == 6 ? words[5] : nullptr;
   const std::string verb = words[1];
   const bool reliable = std::string(words[4]) == "reliable";
   const char* const domain = std::getenv("ROS_DOMAIN_ID");
@@ -167,12 +189,12 @@ int main(int count, char** words) {
   auto* const participant = fast::DomainParticipantFactory::get_instance()->create_participant(
       domain == nullptr ? 0 : static_cast<std::uint32_t>(std::atoi(domain)), qos);
   if (participant == nullptr) return 2;
-  const fast::TypeSupport type(new Raw(words[3]));
+  const fast::TypeSupport type(new Raw(words[3], partition != nullptr));
   type.register_type(participant);
   fast::Topic* const topic = participant->create_topic(words[2], words[3], fast::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) return 2;
   const int code = verb == "publish" ? publish(*participant, topic, reliable)
-                                     : listen(*participant, topic, reliable);
+                                     : listen(*participant, topic, reliable, partition);
   // Its threads are ended by hand nowhere: the process is.
   std::cout.flush();
   participant->delete_contained_entities();

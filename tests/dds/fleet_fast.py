@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What a robot tells its fleet, as another maker's DDS hears it: Fast DDS listens to the real program.
+
+Usage: fleet_fast.py SEQLOOP FAST_END
+"""
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from dds import ros  # noqa: E402
+from dds.fleet import Robot, drive, expect, way  # noqa: E402
+from dds.fleet_keeper import places  # noqa: E402
+
+
+class Reader:
+    """Plain CDR of little-endian numbers, behind its header of four bytes."""
+
+    def __init__(self, message: bytes) -> None:
+        self.body, self.at = message[4:], 0
+
+    def number(self, kind: str) -> int:
+        size = struct.calcsize("<" + kind)
+        self.at += -self.at % size
+        value = struct.unpack_from("<" + kind, self.body, self.at)[0]
+        self.at += size
+        return value
+
+    def octets(self) -> bytes:
+        size = self.number("I")
+        self.at += size
+        return self.body[self.at - size:self.at]
+
+
+def place(message: bytes) -> tuple:
+    """@return session, frame, time, names and form or nothing, bytes, visit or nothing, as platform/dds/idl/fleet.idl"""
+    cdr = Reader(message)
+    session, frame, time_ns = cdr.number("q"), cdr.number("Q"), cdr.number("q")
+    about, visit = None, None
+    if cdr.number("I") == 1:
+        about = [cdr.octets().rstrip(b"\0").decode() for _ in range(4)] + [cdr.number("I"), cdr.number("I")]
+    content = cdr.octets()
+    if cdr.number("I") == 1:
+        visit = (cdr.number("q"), cdr.number("Q"))
+    return session, frame, time_ns, about, content, visit
+
+
+def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
+    robot = Robot(seqloop, work, "anna", drive(work, "anna", way(700), 1), "anna.seqloop")
+    time.sleep(1.5)  # it has told some before anybody listens
+    listener = subprocess.Popen([fast_end, "listen", "seqloop_fleet/places", "seqloop_fleet::Place", "reliable", "test"],
+                                stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ros.environment())
+    robot.end()
+    data = listener.communicate()[0]
+    heard = []
+    while len(data) >= 8:
+        size = struct.unpack_from("<I", data)[0]
+        heard.append(place(data[8:8 + size]))
+        data = data[8 + size:]
+    saved = places(work / "anna.seqloop")
+    told = {(session, frame): struct.pack("<q", time_ns) + content
+            for session, frame, time_ns, _, content, visit in heard if visit is None}
+    expect(told == saved, f"Fast DDS hears every place that is saved, to the byte: {len(told)} of {len(saved)}")
+    first = heard[0]
+    expect(first[1] == 0 and first[3] is not None and first[3][0] == "anna" and first[3][2].startswith("int8")
+           and first[3][4] == 64, f"the first says whose it is and what it is like: {first[3]}")
+    expect(all(about is None or about == first[3] for _, _, _, about, _, _ in heard), "and all that say so say the same")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        main(sys.argv[1], sys.argv[2], pathlib.Path(folder))
