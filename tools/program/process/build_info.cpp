@@ -8,6 +8,7 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
+#include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop_commit.hpp"
 
 namespace seqloop::program {
@@ -40,8 +41,9 @@ std::string program_state() {
 }
 
 std::string condition_line() {
-  return fmt::format("{}, {} cores; compiler {}; OpenCV " CV_VERSION "; {}", processor(),
-                     std::thread::hardware_concurrency(), __VERSION__, version_line());
+  return fmt::format("{}, {} cores, kernels {}; compiler {}; OpenCV " CV_VERSION "; {}",
+                     processor(), std::thread::hardware_concurrency(), best_integer_kernels().name,
+                     __VERSION__, version_line());
 }
 
 }  // namespace seqloop::program
