@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The examples: what they print, and that they draw the picture on the page of the room.
 
-Usage: examples_test.py SOURCE [DRIVES]    wants PYTHONPATH and SEQLOOP_STREET_BINARY; with DRIVES, a folder with
+Usage: examples_test.py SOURCE [DRIVES]    wants PYTHONPATH, SEQLOOP_BINARY and SEQLOOP_STREET_BINARY; with DRIVES, a folder with
 Gardens Point, the protocol is run there. Exit code 77 where matplotlib or DRIVES is missing.
 """
 import os
@@ -54,6 +54,18 @@ class Protocol(unittest.TestCase):
         self.assertGreater(recall["another descriptor, our matcher"], .9)
         self.assertLess(recall["our descriptor, dot product"], .5)
         self.assertRegex(said, r"accepted: (19\d|200) of 200 frames, precision 1.000")
+
+
+class StepCost(unittest.TestCase):
+    def test_python_and_the_program_do_the_same(self) -> None:
+        if DRIVES is not None:
+            self.skipTest("elsewhere")
+        said = run("step_cost.py", os.environ["SEQLOOP_BINARY"], 60).splitlines()
+        self.assertEqual(len(said), 5, said)
+        for line in said[1:]:
+            *_, program, python = line.split()
+            self.assertEqual(program, python)
+            self.assertGreater(int(program), 30)
 
 
 class Look(unittest.TestCase):

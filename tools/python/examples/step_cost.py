@@ -1,45 +1,76 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What a step from Python costs beyond the step itself.
+"""What a step from Python costs beyond the program's: the same descriptors, map and settings, in turn.
 
-Usage: step_cost.py      with PYTHONPATH=build/release/tools/python
-A detector that searches one place by single frames has next to nothing to do: what its step takes is what
-the way there and back costs, and the check of the descriptor's length. Prints microseconds, p50 and p99.
+Usage: step_cost.py [PROGRAM [FRAMES]]      with PYTHONPATH=build/release/tools/python
+PROGRAM is `seqloop`, from PATH unless named, FRAMES the length of a drive (2000). The program's time is that of its
+own clock around the step (`latency_ms.match`), Python's is around `Detector.step`, with all that the binding does.
+Prints microseconds, and how many answers both accept: the same.
 """
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
 import time
 
 import numpy
 
 import seqloop
 
+SHAPES = ((735, 200), (735, 3_476), (9_216, 1_000), (43_264, 200))  # values, places
+TURNS = 3
 
-def cost(detector: seqloop.Detector, frames: numpy.ndarray, rounds: int) -> str:
-    took = []
-    for index in range(rounds):
-        row = frames[index % len(frames)]
+
+def unit(rows: numpy.ndarray) -> numpy.ndarray:
+    return (rows / numpy.linalg.norm(rows, axis=1, keepdims=True)).astype(numpy.float32)
+
+
+def by_program(program: str, folder: pathlib.Path) -> tuple[list[float], int]:
+    """Microseconds of each step, and how many answers are accepted."""
+    lines = folder / "lines.jsonl"
+    subprocess.run([program, "run", "--source", folder / "query.npy", "--reference", folder / "map.npy", "--out", lines],
+                   check=True, capture_output=True)
+    said = [json.loads(line) for line in lines.read_text().splitlines()]
+    return ([1e3 * line["latency_ms"]["match"] for line in said if line["newest"] is not None],
+            sum(answer["status"] == "match" for line in said for answer in line["answers"]))
+
+
+def by_python(places: numpy.ndarray, drive: numpy.ndarray) -> tuple[list[float], int]:
+    map = seqloop.PlaceMap(len(places), places.shape[1])
+    map.add_drive(places)
+    detector = seqloop.Detector(map)
+    took, answers = [], []
+    for row in drive:
         start = time.perf_counter_ns()
-        detector.step(row)
-        took.append(time.perf_counter_ns() - start)
-    p50, p99 = numpy.percentile(took[rounds // 10:], (50, 99)) / 1e3
-    return f"{p50:8.2f} {p99:8.2f}"
-
-
-def unit(rows: int, size: int) -> numpy.ndarray:
-    values = numpy.random.default_rng(1).standard_normal((rows, size))
-    return (values / numpy.linalg.norm(values, axis=1, keepdims=True)).astype(numpy.float32)
+        report = detector.step(row)
+        took.append((time.perf_counter_ns() - start) / 1e3)
+        answers += report.answers
+    answers += detector.finish()
+    return took, sum(answer.gate == "match" for answer in answers)
 
 
 def main() -> None:
-    print("values  places       p50      p99")
-    for size in (16, 735, 43_264):
-        drive = unit(100, size)
-        alone = seqloop.PlaceMap(1, size, method="single", standardise=False)
-        alone.add_drive(drive[:1])
-        print(f"{size:6}  {1:6} ", cost(seqloop.Detector(alone), drive, 3_000))
-    drive = unit(3_476, 735)
-    places = seqloop.PlaceMap(3_476, 735)
-    places.add_drive(drive)
-    print(f"{735:6}  {3_476:6} ", cost(seqloop.Detector(places), drive, 3_000), "  (a usual detector, whole)")
+    program = sys.argv[1] if len(sys.argv) > 1 else "seqloop"
+    frames = int(sys.argv[2]) if len(sys.argv) > 2 else 2_000
+    random = numpy.random.default_rng(1)
+    print("values places   program: p50    p99   Python: p50    p99   more: p50   accepted by each")
+    for values, count in SHAPES:
+        places = unit(random.standard_normal((count, values)))
+        noise = random.standard_normal((frames, values)) / values ** .5
+        drive = unit(places[numpy.arange(frames) % count] + noise)
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            numpy.save(folder / "map.npy", places)
+            numpy.save(folder / "query.npy", drive)
+            took: list[list[float]] = [[], []]
+            for _ in range(TURNS):
+                here, accepted = by_program(program, folder)
+                there, same = by_python(places, drive)
+                took[0] += here
+                took[1] += there
+        (a50, a99), (b50, b99) = (numpy.percentile(side, (50, 99)) for side in took)
+        print(f"{values:6} {count:6} {a50:14.1f} {a99:6.0f} {b50:13.1f} {b99:6.0f} {b50 - a50:11.1f} {accepted:10} {same}")
 
 
 if __name__ == "__main__":
