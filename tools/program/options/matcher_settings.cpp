@@ -171,7 +171,7 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                  settings.min_probability = static_cast<float>(parse_number(value));
                }});
   options.add({"patience", ValueKind::count,
-               "a frame is answered this many frames later at the latest, 0 to 1000 [60]",
+               "a frame is answered this many frames later at the latest, 0 to 1000 [120]",
                [&settings](std::string_view value) { settings.patience = parse_count(value); }});
   options.section("Decision", Shown::in_help_all);
   options.add({"decide-by", ValueKind::text,
