@@ -19,6 +19,7 @@ from dds.fleet import expect, way  # noqa: E402
 from dds.fleet_net import RATE, Network, Robot, command  # noqa: E402
 
 BEFORE, AFTER = 2.5, 4.0  # seconds
+LEASE, REDISCOVERY = 10.0, 15.0  # who is not heard for so long has gone, until it announces itself again
 AHEAD = 100  # frames that one robot is ahead of the other
 
 
@@ -27,7 +28,7 @@ def known(robot: Robot) -> int:
 
 
 def main(seqloop: str, apart: float, work: pathlib.Path) -> None:
-    frames = int((BEFORE + apart + AFTER) * RATE)
+    frames = int((BEFORE + apart + (AFTER if apart < LEASE - 1 else REDISCOVERY)) * RATE)
     seen = way(frames + AHEAD)
     for robot, first in enumerate((AHEAD, 0)):
         noisy = seen[first:first + frames]
