@@ -283,9 +283,16 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
         const std::int64_t there =
             by_line ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)]
                     : 0;
-        return {number(from, there), static_cast<float>(line->score),
+        // Line and trace err each in its own way: half way between them errs least. Another visit's
+        // rows are no neighbours of the trace's.
+        std::int64_t aside = 0;
+        if (const std::size_t traced = at(frame).row;
+            order.apart(from, traced) <= trajectories_->window()) {
+          aside = (static_cast<std::int64_t>(traced) - static_cast<std::int64_t>(from) - there) / 2;
+        }
+        return {number(from, there + aside), static_cast<float>(line->score),
                 static_cast<float>(line->uniqueness), trajectories_->velocity(line->line),
-                number(from, offsets.back())};
+                number(from, offsets.back() + aside)};
       }
     }
   }

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "core/matcher.hpp"
+#include "core/seen.hpp"
 #include "core/ways.hpp"
-#include "seqloop/detail/place_belief.hpp"
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/detail/trace_span.hpp"
 
@@ -16,27 +16,6 @@ namespace seqloop {
 namespace {
 
 constexpr std::size_t size = 128;
-
-/// What a detector gives its belief to see.
-struct Seen {
-  MatcherConfig config;
-  TestArena memory;
-  PlaceMap map;
-  QueryHistory queries;
-  CandidateProposals proposals;
-
-  Seen(const oracle::Vectors& places, const MatcherConfig& with)
-      : config(with),
-        map(map_of(places, with)),
-        queries(memory.arena, DescriptorForm(with, size), 32),
-        proposals(memory.arena, with, places.size()) {}
-
-  SceneView take(const std::vector<float>& descriptor) {
-    queries.push(descriptor);
-    proposals.look(queries, map, map.size(), queries.newest(), 0);
-    return {&queries, &map, &proposals, queries.newest(), 0, map.size()};
-  }
-};
 
 /// Section 6, step by step.
 class NaiveBelief {
