@@ -9,6 +9,7 @@
 #include "dds/frame_times.hpp"
 #include "dds/subscription.hpp"
 #include "ros/pictures.hpp"
+#include "ros/wall_time.hpp"
 
 namespace seqloop::dds {
 namespace {
@@ -19,11 +20,6 @@ constexpr Nanoseconds time_step = Milliseconds(50);
 constexpr Nanoseconds look_interval = Milliseconds(100);
 constexpr std::int32_t depth = 30;  // messages that wait while the capture thread is kept away
 constexpr std::uint32_t no_buffer = ~0U;
-
-std::int64_t wall_ns() noexcept {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-}
 
 void append_milliseconds(FixedText& text, Nanoseconds time) noexcept {
   text.append_number(static_cast<std::uint64_t>(time / Milliseconds(1)));
@@ -147,7 +143,7 @@ void TopicCamera::number(Captured& captured) noexcept {
 
 /// Says when it was taken, and what is missing before it.
 void TopicCamera::time(Captured& captured, std::int64_t stamp_ns) noexcept {
-  const FrameTimes::Judged judged = ear_->times.judge(stamp_ns, captured.arrived, wall_ns());
+  const FrameTimes::Judged judged = ear_->times.judge(stamp_ns, captured.arrived, ros::wall_ns());
   start_ns_.store(ear_->times.start_ns(), std::memory_order_relaxed);
   counters_.lost += judged.lost;
   captured.index += judged.lost;

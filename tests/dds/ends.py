@@ -108,7 +108,7 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
 
 def sessions(seqloop: str, places: pathlib.Path, pictures: list[pathlib.Path], fast_end: pathlib.Path,
              work: pathlib.Path) -> None:
-    """Loop closures say of which session of a map their places are."""
+    """Loop closures say of which session of a map their places are, and there are pictures of these."""
     work.mkdir()
     begun = subprocess.run([seqloop, "run", "--source", places, "--map", work / "m.seqloop", "--session", "monday",
                             "--out", os.devnull], capture_output=True, text=True)
@@ -116,11 +116,16 @@ def sessions(seqloop: str, places: pathlib.Path, pictures: list[pathlib.Path], f
         return
     expect(begun.returncode == 0, "a map of one session")
     listener = ros.Listener(fast_end, "/seqloop/loop_closures", "seqloop_msgs/msg/LoopClosure")
+    pairs = ros.Listener(fast_end, "/seqloop/matched_pair/compressed", COMPRESSED)
     run = Run(seqloop, work, "--map", work / "m.seqloop", "--session", "tuesday", "--ros", "--decide-by",
               "uniqueness")
     listener.wait_until_heard()
+    pairs.wait_until_heard()
     answers = accepted(drive(run, fast_end, pictures))
     loops = [read_closure(message) for message in listener.messages()]
+    found = pairs.messages()
+    expect(found and all(b"jpeg\0" in pair[:40] and b"\xff\xd8\xff" in pair[:60] for pair in found),
+           f"{len(found)} pairs with a place of monday's")
     expect([(loop["frame"], loop["match"], loop["session"]) for loop in loops]
            == [(answer["frame"], answer["match"], answer["session"]) for answer in answers] and loops
            and all(loop["session"] == "monday" for loop in loops), f"{len(loops)} places are monday's")

@@ -2,7 +2,6 @@
 #include "program/drives/drives.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
 #include "program/process/say.hpp"
+#include "ros/wall_time.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/bags/bag_source.hpp"
 #include "seqloop/difference.hpp"
@@ -130,11 +130,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
 }
 
 std::int64_t start_ns(const FrameSource* recording) noexcept {
-  using std::chrono::nanoseconds;
-  if (recording == nullptr) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<nanoseconds>(now).count();
-  }
+  if (recording == nullptr) return ros::wall_ns();
   const auto* bag = dynamic_cast<const bags::BagSource*>(recording);
   return bag == nullptr ? 0 : bag->start_ns();
 }

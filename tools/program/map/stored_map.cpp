@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "program/process/interruption.hpp"
+#include "ros/wall_time.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -116,17 +117,15 @@ void StoredMap::load(PlaceMap& map) {
 
 void StoredMap::begin_session(const std::string& settings) {
   if (read_only_) return;
-  const auto now = std::chrono::system_clock::now();
-  const auto began =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
+  const std::int64_t began = ros::wall_ns();
   std::string name = new_name_;
   if (name.empty()) {
     const auto known = file_.sessions();
     const auto taken = [&](const std::string& other) {
       return std::ranges::find(known, other, &sqlite::SessionFacts::name) != known.end();
     };
-    const std::string when = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                                         fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+    const std::string when = fmt::format(
+        "{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(began / 1'000'000'000)));
     name = when;
     for (int more = 2; taken(name); ++more) name = fmt::format("{}-{}", when, more);
   }

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
-
-#include "program/watch/picture_store.hpp"
 
 namespace seqloop::program {
 
-/// A frame and its place, side by side, or the kept pictures nearest to them. Allocates: yes.
-/// @return a JPEG file; empty where there is no picture of one
-[[nodiscard]] std::vector<std::uint8_t> pair_picture(const PictureStore& frames,
-                                                     std::uint64_t frame,
-                                                     const PictureStore& places,
-                                                     std::uint64_t place);
+/// The kept picture nearest to a frame or place, as a JPEG file; empty where none is kept.
+/// @param pictures a `PictureStore`, or `PlacePictures`, which may throw SetupError
+template <class Pictures>
+[[nodiscard]] std::string nearest_jpeg(const Pictures& pictures, std::uint64_t number) {
+  const std::vector<std::uint64_t> around = pictures.around(number);
+  if (around.empty()) return {};
+  const auto distance = [number](std::uint64_t other) {
+    return other > number ? other - number : number - other;
+  };
+  return pictures.jpeg(*std::ranges::min_element(around, {}, distance));
+}
+
+/// Two pictures side by side. Allocates: yes.
+/// @return a JPEG file; empty where one of them is none
+[[nodiscard]] std::vector<std::uint8_t> pair_picture(const std::string& left_jpeg,
+                                                     const std::string& right_jpeg);
 
 }  // namespace seqloop::program

@@ -18,6 +18,8 @@
 #include "program/watch/background.hpp"
 #include "program/watch/pair_picture.hpp"
 #include "program/watch/picture_store.hpp"
+#include "program/watch/take.hpp"
+#include "ros/wall_time.hpp"
 #include "seqloop/dds/publisher.hpp"
 
 namespace seqloop::program {
@@ -38,11 +40,12 @@ std::string number(double value) { return fmt::format("{:.3g}", value); }
 class RosAnswers::Impl {
  public:
   Impl(std::shared_ptr<dds::Participant> participant, std::function<std::int64_t()> start_ns,
-       bool own_places)
+       bool own_places, std::unique_ptr<PlacePictures> pictures)
       : participant_(std::move(participant)),
         publisher_(*participant_),
         ask_start_(std::move(start_ns)),
         own_places_(own_places),
+        saved_places_(std::move(pictures)),
         thread_([this] { follow(); }) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -77,37 +80,31 @@ class RosAnswers::Impl {
       look();
       std::this_thread::sleep_for(round_time);
     }
-    look();
-    send_answers(true);
+    take_all(true);
     send_status();
     publisher_.flush(patience_at_end);
   }
 
   void look() {
-    while (const Snapshot* snapshot = watch.frames().front()) {
-      newest_ = *snapshot;
-      watch.frames().pop();
-      if (newest_->frame.report.gate != Gate::no_frame) {
-        times_.add(newest_->frame.report.newest, newest_->frame.frame.time_s);
-      }
-    }
-    while (const SmallPicture* picture = watch.pictures().front()) {
-      frames_.add(*picture);
-      watch.pictures().pop();
-    }
-    watch.wishes.every.store(frames_.every(), std::memory_order_relaxed);
-    send_answers(false);
+    take_all(false);
     const SteadyTime now = std::chrono::steady_clock::now();
     if (now - status_sent_ >= status_interval) send_status();
   }
 
-  /// @param all also those of a frame that has not come here
-  void send_answers(bool all) {
-    while (const Answer* answer = watch.answers().front()) {
-      if (!all && !times_.at(answer->frame) && answer->frame > newest_frame()) return;
-      if (closes_loop(*answer)) send(*answer);
-      watch.answers().pop();
-    }
+  /// @param all also answers about a frame that has not come here
+  void take_all(bool all) {
+    take(
+        watch, frames_,
+        [this](const Snapshot& snapshot) {
+          newest_ = snapshot;
+          if (snapshot.frame.report.gate == Gate::no_frame) return;
+          times_.add(snapshot.frame.report.newest, snapshot.frame.frame.time_s);
+        },
+        [this, all](const Answer& answer) {
+          if (!all && !times_.at(answer.frame) && answer.frame > newest_frame()) return false;
+          if (closes_loop(answer)) send(answer);
+          return true;
+        });
   }
 
   void send(const Answer& answer) {
@@ -119,8 +116,17 @@ class RosAnswers::Impl {
     if (now - pair_sent_ < pair_interval || !publisher_.pair_is_wanted()) return;
     pair_sent_ = now;
     const std::vector<std::uint8_t> pair =
-        pair_picture(frames_, closure.frame, own_places_ ? frames_ : known, closure.match);
+        pair_picture(nearest_jpeg(frames_, closure.frame), place_jpeg(closure.match));
     if (!pair.empty()) count(publisher_.publish_pair(closure.stamp_ns, pair));
+  }
+
+  [[nodiscard]] std::string place_jpeg(std::uint64_t place) const {
+    if (!saved_places_) return nearest_jpeg(own_places_ ? frames_ : known, place);
+    try {
+      return nearest_jpeg(*saved_places_, place);
+    } catch (const SetupError&) {
+      return {};  // the map's file cannot be read just now: there is no pair of this one
+    }
   }
 
   /// Numbers of places grow from session to session.
@@ -183,9 +189,7 @@ class RosAnswers::Impl {
          "seqloop: map",
          newest_->frame.report.map_full ? "the map is full" : "there is room",
          {{"places", std::to_string(status.places)}}}};
-    const auto wall = std::chrono::system_clock::now().time_since_epoch();
-    const auto wall_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(wall).count();
-    count(publisher_.publish(wall_ns, diagnoses));
+    count(publisher_.publish(ros::wall_ns(), diagnoses));
   }
 
   void count(bool sent) noexcept {
@@ -200,6 +204,7 @@ class RosAnswers::Impl {
   dds::Publisher publisher_;
   std::function<std::int64_t()> ask_start_;
   bool own_places_;
+  std::unique_ptr<PlacePictures> saved_places_;
   std::atomic<std::int64_t> start_ns_{0};
   std::atomic<std::uint64_t> dropped_{0};
 
@@ -217,8 +222,10 @@ class RosAnswers::Impl {
 };
 
 RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> participant,
-                       std::function<std::int64_t()> start_ns, bool own_places)
-    : impl_(std::make_unique<Impl>(std::move(participant), std::move(start_ns), own_places)) {}
+                       std::function<std::int64_t()> start_ns, bool own_places,
+                       std::unique_ptr<PlacePictures> pictures)
+    : impl_(std::make_unique<Impl>(std::move(participant), std::move(start_ns), own_places,
+                                   std::move(pictures))) {}
 
 RosAnswers::~RosAnswers() = default;
 
