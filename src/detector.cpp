@@ -365,9 +365,12 @@ void Detector::decide(FrameReport& report, const std::optional<BestRow>& best) c
   const auto number = [&](std::size_t row) {
     return static_cast<std::size_t>(map_->order().number(row));
   };
-  report.match = Match{number(best->row), static_cast<float>(best->score),
-                       static_cast<float>(best->uniqueness), trajectories_.velocity(line),
-                       number(best->row + ahead)};
+  report.match = Match{number(best->row),
+                       static_cast<float>(best->score),
+                       static_cast<float>(best->uniqueness),
+                       trajectories_.velocity(line),
+                       number(best->row + ahead),
+                       best->runner_up ? std::optional(number(*best->runner_up)) : std::nullopt};
   const bool unique = report.match->uniqueness <= config_.max_uniqueness;
   report.gate = unique ? Gate::match : Gate::not_unique;
 }

@@ -58,13 +58,15 @@ std::optional<BestRow> LoopDecision::decide(const PlaceOrder& order, std::span<c
   const std::optional<double> past = past_.lowest(best.row, half_rwindow_, rows, session);
   past_.remember({best.row, best.score});
   if (runner_up.scored > 0) past_.remember({runner_up.row, runner_up.score});
+  const bool is_of_this_frame = runner_up.scored > 0 && !(past && *past < runner_up.score);
+  const auto seen_now = is_of_this_frame ? std::optional(runner_up.row) : std::nullopt;
   if (past) runner_up = {runner_up.row, std::min(runner_up.score, *past), runner_up.scored + 1};
   const std::optional<double> runner_up_score =
       runner_up.scored > 0 ? std::optional(runner_up.score) : last_runner_up_;
   if (keep_runner_up) last_runner_up_ = runner_up_score;
   const double uniqueness =
       runner_up_score ? best.score / *runner_up_score : std::numeric_limits<double>::quiet_NaN();
-  return BestRow{best.row, best.score, uniqueness, best.scored};
+  return BestRow{best.row, best.score, uniqueness, best.scored, seen_now};
 }
 
 }  // namespace seqloop

@@ -39,6 +39,9 @@ struct Match {
   float uniqueness = 0.0F;
   double velocity = 0.0;  ///< rows a frame; NaN for single frames
   std::size_t head = 0;   ///< the place at the newest column
+  /// `Decision::uniqueness`: the place of that runner-up; none where one of an earlier frame, or
+  /// nothing, stood in.
+  std::optional<std::size_t> runner_up = std::nullopt;
 };
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// Usage: page_test.cjs BROWSER URL TOKEN page|map [FOLDER FOR SCREENSHOTS]
+// Usage: page_test.cjs BROWSER FILE TOKEN page|map|twins [FOLDER FOR SCREENSHOTS]
+//   FILE will hold the page's address; FILE.wanted is made when the browser is there to look at it
 //   map: of a run with a map that lasts, whose first session is `<i>monday`
+//   twins: of a run whose places all look alike
+const fs = require('node:fs');
 const {assert, open, noSeriousFaults, noSidewaysScroll, start} = require('./browser.cjs');
 
 const SIZES = [[390, 844], [800, 900], [1280, 800], [2560, 1300]];
@@ -29,11 +32,51 @@ async function showsTheMap(page) {
   assert.ok((await page.textContent('#source')).endsWith(' in m.seqloop'));
 }
 
-async function main([path, url, token, mode, folder]) {
+/// Where two places look alike, both are seen.
+async function showsTwins(page, folder) {
+  await page.waitForFunction(() => document.querySelectorAll('#pair.three > figure').length === 3, null, {timeout: 120000});
+  await page.click('#pause');
+  await page.waitForFunction(() => view.status.state === 'paused', null, {timeout: 60000});
+  const sentence = await page.textContent('#sentence');
+  assert.match(sentence, /^No answer: two places look alike, see them: frame [\d,]+ looks like place [\d,]+ and like place [\d,]+\.$/);
+  await picturesAreThere(page, '#pair');
+  const {frame, place, runner_up: other} = await page.evaluate(() => view.status.shown);
+  assert.notStrictEqual(place, other);
+  const captions = await page.$$eval('#pair > figure > figcaption', (all) => all.map((one) => one.textContent));
+  assert.deepStrictEqual(captions, [`frame ${frame}`, `place ${place}`, `or place ${other}`]);
+  for (const [width, height] of SIZES) {
+    await page.setViewportSize({width, height});
+    await page.waitForTimeout(200);
+    await noSidewaysScroll(page, `${width} pixels`);
+    await noSeriousFaults(page, `${width} pixels`);
+    if (folder) await page.screenshot({path: `${folder}/twins_${width}.png`, fullPage: true});
+  }
+}
+
+async function stops(page, browser) {
+  assert.deepStrictEqual(page.complaints(), []);
+  page.on('dialog', (dialog) => dialog.accept());
+  await page.click('#stop');
+  await page.waitForFunction(() => document.getElementById('health').textContent.includes('ended'), null, {timeout: 60000});
+  await browser.close();
+}
+
+async function addressIn(file) {
+  fs.writeFileSync(file + '.wanted', '');
+  while (!fs.existsSync(file)) await new Promise((done) => setTimeout(done, 50));
+  return fs.readFileSync(file, 'utf8').trim();
+}
+
+async function main([path, file, token, mode, folder]) {
   const browser = await start(path);
   const page = await open(browser, {viewport: {width: 1280, height: 800}, colorScheme: 'light'});
+  const url = await addressIn(file);
   await page.goto(`${url}/#token=${token}`);
   assert.strictEqual(await page.evaluate(() => location.hash), '', 'the token is in no address any more');
+  if (mode === 'twins') {
+    await showsTwins(page, folder);
+    return stops(page, browser);
+  }
   await page.waitForFunction(() => view.status && view.status.counts.frames >= 100, null, {timeout: 120000});
   // Names are text, whatever they hold.
   await page.waitForFunction(() => document.getElementById('source').textContent.includes('<b>query'));
@@ -65,7 +108,9 @@ async function main([path, url, token, mode, folder]) {
   await page.click('summary');
   const helped = await page.$$eval('#words dt', (all) => all.map((term) => term.textContent));
   const named = await page.$$eval('#counts dt, #map dt', (all) => all.map((term) => term.textContent));
-  assert.deepStrictEqual(named.filter((name) => !helped.includes(name)), []);
+  const said = await page.evaluate(() => Object.keys({...view.status.frame, ...view.status.answer, ...view.status.frame.latency_ms}));
+  assert.ok(said.length > 20, String(said));
+  assert.deepStrictEqual([...named, ...said].filter((name) => !helped.includes(name)), []);
   await page.click('summary');
 
   // A person's word on a loop is kept.
@@ -101,12 +146,7 @@ async function main([path, url, token, mode, folder]) {
     }
   }
   assert.strictEqual(papers.size, 2, 'dark is another colour');
-  assert.deepStrictEqual(page.complaints(), []);
-
-  page.on('dialog', (dialog) => dialog.accept());
-  await page.click('#stop');
-  await page.waitForFunction(() => document.getElementById('health').textContent.includes('ended'), null, {timeout: 60000});
-  await browser.close();
+  await stops(page, browser);
 }
 
 main(process.argv.slice(2)).catch((error) => {

@@ -20,8 +20,9 @@ modules=$build/browser/node_modules
 
 work=$(mktemp -d)
 run=
+look=
 cleanup() {
-  [ -z "$run" ] || kill "$run" 2>/dev/null || true
+  for process in $run $look; do kill "$process" 2>/dev/null || true; done
   rm -rf "$work"
 }
 trap cleanup EXIT
@@ -29,9 +30,9 @@ trap cleanup EXIT
 echo 0123456789abcdef >"$work/token"
 # Names are text, whatever they hold.
 mv "$work/street/query" "$work/street/<b>query"
-# served FLAGS...: a run at 20 frames a second, with a page; sets run and url
+# served FLAGS...: a run at 10 frames a second, with a page; sets run and url
 served() {
-  "$seqloop" run --source "$work/street/<b>query" --pace live --fps 20 --budget-total 10000 "$@" \
+  "$seqloop" run --source "$work/street/<b>query" --pace live --fps 10 --budget-total 10000 "$@" \
     --serve 127.0.0.1:0 --serve-token "$work/token" --out "$work/run.jsonl" --summary "$work/run.json" 2>"$work/said" &
   run=$!
   for _ in $(seq 600); do
@@ -46,11 +47,19 @@ served() {
 looked_at() {
   local mode=$1
   shift
+  rm -f "$work/url" "$work/url.wanted"
+  NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$work/url" 0123456789abcdef "$mode" $pictures &
+  look=$!
+  # The browser first: on a busy machine it takes longer to start than the run lasts.
+  until [ -e "$work/url.wanted" ] || ! kill -0 "$look" 2>/dev/null; do sleep 0.1; done
   served "$@"
-  NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$url" 0123456789abcdef "$mode" $pictures
+  echo "$url" >"$work/url.new"
+  mv "$work/url.new" "$work/url"
+  wait "$look" || { cat "$work/said"; exit 1; }
   wait "$run" || { cat "$work/said"; exit 1; }
-  run=
+  run= look=
 }
+looked_at twins --reference "$work/street/reference" --paper --ds 20 --max-uniqueness 0.1
 looked_at page --reference "$work/street/reference"
 "$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/report.html"
 NODE_PATH=$modules node "$source/tests/browser/report_test.cjs" "$browser" "$work/report.html" $pictures

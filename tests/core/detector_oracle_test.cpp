@@ -47,6 +47,11 @@ void expect_same(const oracle::Vectors& reference, const oracle::Vectors& query,
       EXPECT_TRUE(std::isnan(match.velocity));
     }
     EXPECT_EQ(static_cast<std::int64_t>(match.head), answer.head);
+    ASSERT_EQ(match.runner_up.has_value(), answer.runner_up.has_value())
+        << "frame " << answer.query;
+    if (match.runner_up) {
+      EXPECT_EQ(static_cast<std::int64_t>(*match.runner_up), *answer.runner_up) << answer.query;
+    }
     EXPECT_EQ(static_cast<std::int64_t>(report.work.candidates), answer.candidates);
     EXPECT_EQ(static_cast<std::int64_t>(report.k), answer.k);
   }

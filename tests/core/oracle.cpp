@@ -164,8 +164,10 @@ class Matcher {
     const Int best = sorted.front();
 
     double runner_up = none;
+    std::optional<Int> elsewhere;
     for (const auto& [q, row] : scored) {
       if (2 * std::abs(q - best) > static_cast<Int>(config_.rwindow)) {
+        if (row.score < runner_up) elsewhere = q;
         runner_up = std::min(runner_up, row.score);
       }
     }
@@ -180,7 +182,8 @@ class Matcher {
                         static_cast<double>(line->m) / static_cast<double>(ds_),
                         best + line->rows.back(),
                         static_cast<Int>(scored.size()),
-                        k_};
+                        k_,
+                        elsewhere};
 
     if (config_.candidates == Candidates::adaptive && !full) {
       const double cd = change_degree(n);

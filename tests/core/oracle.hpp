@@ -49,6 +49,7 @@ struct Answer {
   std::int64_t head;
   std::int64_t candidates;
   std::int64_t k;
+  std::optional<std::int64_t> runner_up;
 };
 
 /// src/README.md, sections 3 and 4, written down as they stand, on the whole matrix, in double,

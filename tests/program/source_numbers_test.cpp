@@ -92,7 +92,7 @@ TEST(SourceNumbers, CountShortGapsAndLongOnes) {
   EXPECT_EQ(second.report.frame, 8U);
   static_cast<void>(detector.step(drive[4]));
   ProcessedFrame third = processed(500, 4);  // the detector left the gap out
-  third.report.match = Match{.place = 1, .head = 4};
+  third.report.match = Match{.place = 1, .head = 4, .runner_up = 0};
   const std::array answers{about(0), about(3), about(4)};
   third.report.answers = answers;
   third.report.now = Belief{.place = 4};
@@ -104,6 +104,7 @@ TEST(SourceNumbers, CountShortGapsAndLongOnes) {
   EXPECT_EQ(third.report.answers[2].frame, 500U);
   EXPECT_EQ(third.report.match->place, 8U);
   EXPECT_EQ(third.report.match->head, 500U);
+  EXPECT_EQ(third.report.match->runner_up, 7U);
   EXPECT_EQ(third.report.now->place, 500U);
   const std::array rest{about(2), about(4, Match{.place = 3})};
   const std::span<const Answer> renamed = numbers.rename(rest);

@@ -140,6 +140,37 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
 }
 
+TEST_F(Serve, NamesBothPlacesThatLookAlike) {
+  start(
+      "--source q.npy --paper --method seqcnnslam --ds 10 --pace live --fps 100 --budget-total "
+      "10000");
+  http::test::Client page(port_);  // what is shown is chosen while somebody looks
+  page.send("GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  // From the third lap on, each place has been seen twice.
+  Json status;
+  ASSERT_TRUE(until([&](const Json& now) {
+    status = now;
+    const Json& shown = now["shown"];
+    return !shown["runner_up"].is_null() && shown["frame"] > 320;
+  }));
+  const Json& shown = status["shown"];
+  const auto apart = shown["place"].get<int>() - shown["runner_up"].get<int>();
+  EXPECT_EQ(apart % 150, 0) << shown;
+  EXPECT_NE(apart, 0);
+  EXPECT_EQ(json(get("/api/pictures?frame=4&place=2&runner_up=1")),
+            Json::parse(R"({"frame": [], "place": [], "runner_up": []})"));
+  EXPECT_TRUE(post("/api/control", {{"do", "stop"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  std::size_t named = 0;
+  for (const Json& line : lines("r.jsonl")) {
+    for (const Json& answer : line["answers"]) {
+      named += answer.contains("runner_up");
+      EXPECT_TRUE(!answer.contains("runner_up") || answer["status"] == "not_unique") << answer;
+    }
+  }
+  EXPECT_GT(named, 0U);
+}
+
 TEST_F(Serve, AMapThatLastsIsSavedWhenAskedAndKeepsWhatAPersonSaid) {
   ASSERT_EQ(run("match --query q.npy --map m.seqloop --session monday --out m.csv").exit_code, 0);
   start(

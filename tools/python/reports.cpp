@@ -31,8 +31,10 @@ void add_reports(py::module_& module) {
       .def_readonly("uniqueness", &Match::uniqueness)
       .def_readonly("velocity", &Match::velocity)
       .def_readonly("head", &Match::head)
+      .def_readonly("runner_up", &Match::runner_up)
       .def("__repr__", [](const Match& match) {
-        return "Match" + shown(match, {"place", "score", "uniqueness", "velocity", "head"});
+        return "Match" +
+               shown(match, {"place", "score", "uniqueness", "velocity", "head", "runner_up"});
       });
   py::class_<Answer>(module, "Answer", "What is said of one frame in the end.")
       .def_readonly("frame", &Answer::frame)

@@ -22,6 +22,8 @@ struct BestRow {
   double uniqueness;   ///< score by the best score outside the row's window, in its session; NaN
                        ///< where not defined
   std::size_t scored;  ///< candidates that had a score
+  /// The row of that best score elsewhere; none where an earlier frame's stood in for it.
+  std::optional<std::size_t> runner_up;
 };
 
 /// Picks the best row and says how unique it is. Source: src/README.md,

@@ -59,8 +59,7 @@ class Fleet::Impl {
     for (const Answer& answer : answers_) {
       nlohmann::ordered_json json = answer_json(answer);
       // Numbers of this run's own.
-      json.erase("match");
-      json.erase("head");
+      for (const char* key : {"match", "head", "runner_up"}) json.erase(key);
       for (const char* key : {"robot", "session", "session_frame"}) json[key] = nullptr;
       if (answer.match) {
         const OthersMap::Place place = map_.where(answer.match->place);

@@ -40,6 +40,9 @@ Json answer_json(const Answer& answer) {
     json["uniqueness"] = finite(answer.match->uniqueness);
     json["velocity"] = finite(answer.match->velocity);
     json["head"] = answer.match->head;
+    if (answer.gate == Gate::not_unique && answer.match->runner_up) {
+      json["runner_up"] = *answer.match->runner_up;
+    }
   }
   return json;
 }

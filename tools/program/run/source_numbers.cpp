@@ -75,6 +75,7 @@ void SourceNumbers::rename(std::optional<Match>& match) const noexcept {
   if (!match || map_ == nullptr) return;
   match->place = place(match->place);
   match->head = place(match->head);
+  if (match->runner_up) match->runner_up = place(*match->runner_up);
 }
 
 }  // namespace seqloop::program

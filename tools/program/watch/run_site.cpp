@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "program/watch/run_site.hpp"
 
-#include <charconv>
 #include <thread>
 #include <utility>
 
@@ -9,6 +8,8 @@
 #include "program/process/build_info.hpp"
 #include "program/watch/metrics.hpp"
 #include "program/watch/page_files.hpp"
+#include "program/watch/query.hpp"
+#include "program/watch/take.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -28,25 +29,6 @@ http::Reply json_reply(const Json& json, int status = 200) {
 }
 
 http::Reply fault(int status, std::string_view why) { return json_reply({{"error", why}}, status); }
-
-/// The value of `name=` in a query.
-std::string_view value_in(std::string_view query, std::string_view name) {
-  while (!query.empty()) {
-    const std::string_view part = query.substr(0, query.find('&'));
-    query.remove_prefix(std::min(part.size() + 1, query.size()));
-    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
-      return part.substr(name.size() + 1);
-  }
-  return {};
-}
-
-std::optional<std::uint64_t> number_in(std::string_view query, std::string_view name) {
-  const std::string_view text = value_in(query, name);
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -72,21 +54,14 @@ void RunSite::keep_in(LastingMap& map) {
 bool RunSite::looked_at() const { return Clock::now() - looked_at_ < still_looks; }
 
 void RunSite::take() {
-  while (const Answer* answer = watch_->answers().front()) {
-    view_.take(*answer);
-    watch_->answers().pop();
-  }
-  while (const Snapshot* snapshot = watch_->frames().front()) {
-    view_.take(*snapshot, seconds_now());
-    watch_->frames().pop();
-  }
+  program::take(
+      *watch_, frames_, [this](const Snapshot& snapshot) { view_.take(snapshot, seconds_now()); },
+      [this](const Answer& answer) {
+        view_.take(answer);
+        return true;
+      });
   // It goes on while the loop is paused, and tells of no frame.
   if (map_ != nullptr) view_.take_saved(map_->saved());
-  while (const SmallPicture* picture = watch_->pictures().front()) {
-    frames_.add(*picture);
-    watch_->pictures().pop();
-  }
-  watch_->wishes.every.store(frames_.every(), std::memory_order_relaxed);
   watch_->wishes.pictures.store(looked_at(), std::memory_order_relaxed);
 }
 
@@ -101,6 +76,8 @@ void RunSite::choose_shown() {
                    : frames_.newest() ? Json(*frames_.newest())
                                       : Json();
     shown_.place = known ? Json(answer->match->place) : Json();
+    const bool two = known && answer->gate == Gate::not_unique && answer->match->runner_up;
+    shown_.runner_up = two ? Json(*answer->match->runner_up) : Json();
   }
   if (now - shown_.loops_at >= between_lists || ended_) {
     shown_.loops_at = now;
@@ -181,7 +158,10 @@ Json RunSite::status() const {
   json["map"]["memory_used"] = resident_memory();
   const std::string why = trouble();
   json["health"] = {{"ok", why.empty()}, {"why", why}};
-  json["shown"] = {{"frame", shown_.frame}, {"place", shown_.place}, {"loops", shown_.loops}};
+  json["shown"] = {{"frame", shown_.frame},
+                   {"place", shown_.place},
+                   {"runner_up", shown_.runner_up},
+                   {"loops", shown_.loops}};
   json["newest_picture"] = frames_.newest() ? Json(*frames_.newest()) : Json(nullptr);
   json["picture_of_every"] = frames_.every();
   json["unseen"] = watch_->unseen();
@@ -205,17 +185,21 @@ http::Reply RunSite::metrics() const {
 
 http::Reply RunSite::around(std::string_view query) const {
   Json json;
-  const auto place = number_in(query, "place");
-  if (place && saved_places_) {
+  for (const std::string_view name : {"place", "runner_up"}) {
+    const auto place = number_in(query, name);
+    if (!place || !saved_places_) continue;
     try {
-      json["place"] = saved_places_->around(*place);
+      json[name] = saved_places_->around(*place);
     } catch (const SetupError& error) {
       return fault(404, error.what());
     }
   }
   const std::scoped_lock lock(mutex_);
-  if (const auto frame = number_in(query, "frame")) json["frame"] = frames_.around(*frame);
-  if (place && !saved_places_) json["place"] = (own_places_ ? frames_ : places_).around(*place);
+  for (const std::string_view name : {"frame", "place", "runner_up"}) {
+    const auto number = number_in(query, name);
+    if (!number || json.contains(name)) continue;
+    json[name] = (own_places_ || name == "frame" ? frames_ : places_).around(*number);
+  }
   return json_reply(json);
 }
 

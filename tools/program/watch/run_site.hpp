@@ -61,6 +61,7 @@ class RunSite : public http::Site {
   struct Shown {
     Json frame;
     Json place;
+    Json runner_up;  ///< where two places look alike
     std::size_t loops = 0;
     Clock::time_point pair_at{};
     Clock::time_point loops_at{};

@@ -47,17 +47,19 @@ function side(of, what, wanted, around, neighbours) {
   return figure;
 }
 
-/// Shows a frame beside its place in an element.
-async function showPair(element, frame, place, neighbours) {
-  const wish = `${frame}/${place}/${neighbours}`;
+/// Shows a frame beside its place in an element, and beside another one where two look alike.
+async function showPair(element, frame, place, neighbours, other = null) {
+  const wish = `${frame}/${place}/${other}/${neighbours}`;
   if (element.dataset.pair === wish) return;
   element.dataset.pair = wish;
-  const query = [frame === null ? '' : 'frame=' + frame, place === null ? '' : 'place=' + place].join('&');
+  const query = Object.entries({frame, place, runner_up: other}).filter(([, n]) => n !== null).map((one) => one.join('=')).join('&');
   const around = report ? {} : await ask('/api/pictures?' + query).catch(() => ({}));
   if (element.dataset.pair !== wish) return;  // something newer is wanted by now
   const sides = [side('frame', 'frame', frame, around.frame || [], neighbours),
     place === null ? make('figure', {}, make('div', {class: 'none'}, 'no place'), make('figcaption', {}, 'place –'))
                    : side('place', 'place', place, around.place || [], neighbours)];
+  if (other !== null) sides.push(side('place', 'or place', other, around.runner_up || [], neighbours));
+  element.classList.toggle('three', other !== null);
   if (neighbours && element.childElementCount > 0) {
     // What is there stays until the new pictures have come, or take too long.
     const images = sides.flatMap((one) => [...one.querySelectorAll('img')]);

@@ -50,6 +50,15 @@ function showTroubles(troubles) {
   byId('troubles').replaceChildren(...texts.map((text) => make('li', {}, text)));
 }
 
+const yes = (is) => is === null ? '–' : is ? 'yes' : 'no';
+
+/// Of the newest frame.
+function newestTerms({newest, time_s: time, now, age_ms: age, missed}) {
+  return [['newest', number(newest)], ['time_s', time === null ? '–' : time.toFixed(1)],
+    ['now', now ? `place ${placeName(now.place)}: ${percent(now.probability)}; new_place: ${percent(now.new_place)}` : '–'],
+    ['age_ms', age ? milliseconds(age) : '–'], ['missed', missed ? missed.join(', ') : 'none']];
+}
+
 function showStatus(status) {
   const {run, counts, frame, map, health} = status;
   const gates = counts.gates;
@@ -66,10 +75,11 @@ function showStatus(status) {
   show('detail', !report && answer && answer.match !== null && answer.status !== 'new_place' ?
     [answer.probability !== null && `probability ${percent(answer.probability)}`,
       answer.uniqueness !== null && `uniqueness ${answer.uniqueness.toFixed(2)}`,
-      answer.score !== null && `score ${answer.score.toFixed(3)}`].filter(Boolean).join(' · ') : '');
+      answer.score !== null && `score ${answer.score.toFixed(3)}`,
+      answer.velocity !== null && `velocity ${answer.velocity.toFixed(2)}`, `head ${number(answer.head)}`].filter(Boolean).join(' · ') : '');
   fillTerms('counts', [['frames', number(counts.frames)], ...['match', 'unsure', 'new_place', 'not_unique', 'no_candidate',
     'warming_up', 'frame_error', 'no_frame'].filter((name) => gates[name] || name === 'match').map((name) => [name, number(gates[name])]),
-    ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
+    ...(frame ? newestTerms(frame) : []), ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
     ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)],
     ...(run.capture ? [['capture', run.capture]] : []), ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
   showTroubles(status.troubles);
@@ -77,7 +87,8 @@ function showStatus(status) {
   fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
     ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', sessionNames(run.sessions)]]),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
-    ['k', frame ? number(frame.k) : '–'],
+    ['k', frame ? number(frame.k) : '–'], ['full_search', yes(frame && frame.full_search)],
+    ['map_full', yes(frame && frame.map_full)],
     ['scanned', map.scanned ? `${number(map.scanned)} of ${number(map.places)}` + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
     ['memory_planned', bytes(run.memory_planned)], ['memory_used', bytes(map.memory_used)],
     ['method', run.method || '–'], ['ds', number(run.ds)]]);
@@ -112,8 +123,8 @@ function showAll() {
   showStatus(status);
   draw();
   showLoops(report ? status.loops.listed : status.shown.loops);
-  const {frame, place} = report ? {frame: null} : status.shown;
-  if (frame !== null && !document.hidden) showPair(byId('pair'), frame, place, true);
+  const {frame, place, runner_up: other} = report ? {frame: null} : status.shown;
+  if (frame !== null && !document.hidden) showPair(byId('pair'), frame, place, true, other);
 }
 
 function pick(dot) {
