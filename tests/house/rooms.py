@@ -22,7 +22,7 @@ OURS = {"seqloop", "evaluation", "experiment", "program", "python", "street", "s
 # Rooms of tools/, and the others that each looks into.
 TOOLS = {"evaluation": (), "synthetic": (), "program": ("evaluation", "synthetic"),
          "experiment": ("evaluation", "program"), "peer_bench": ("program",),
-         "cost": ("synthetic",), "street": (), "python": ("evaluation", "program")}
+         "cost": ("program", "synthetic"), "street": (), "python": ("evaluation", "program")}
 
 # Which instructions the processor has, and their names: for kernels alone.
 INSTRUCTIONS = {"arm_neon.h", "cpuid.h", "immintrin.h", "sys/auxv.h"}

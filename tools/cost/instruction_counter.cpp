@@ -14,12 +14,13 @@
 namespace seqloop::cost {
 namespace {
 
-int open_counter() {
+int open_counter(Whose whose, Where where) {
   perf_event_attr wanted{};
   wanted.size = sizeof(wanted);
   wanted.type = PERF_TYPE_HARDWARE;
   wanted.config = PERF_COUNT_HW_INSTRUCTIONS;
-  wanted.exclude_kernel = 1;
+  wanted.exclude_kernel = where == Where::program ? 1 : 0;
+  wanted.inherit = whose == Whose::threads ? 1 : 0;
   wanted.exclude_hv = 1;
   constexpr pid_t this_thread = 0;
   constexpr int any_cpu = -1;
@@ -36,7 +37,8 @@ int open_counter() {
 
 }  // namespace
 
-InstructionCounter::InstructionCounter() : counter_(open_counter()) {
+InstructionCounter::InstructionCounter(Whose whose, Where where)
+    : counter_(open_counter(whose, where)) {
   own_ = count([] {});
 }
 

@@ -5,11 +5,16 @@
 
 namespace seqloop::cost {
 
-/// Counts the instructions that this thread executes, those of the kernel for it left out.
+/// Whose instructions are counted: this thread's, or also those of all that it starts from then on.
+enum class Whose : std::uint8_t { thread, threads };
+/// Whether what the kernel does for them is counted as well.
+enum class Where : std::uint8_t { program, program_and_kernel };
+
+/// Counts instructions from when it is made.
 class InstructionCounter {
  public:
   /// Throws SetupError where the kernel or its machine cannot count them.
-  InstructionCounter();
+  explicit InstructionCounter(Whose whose = Whose::thread, Where where = Where::program);
   InstructionCounter(const InstructionCounter&) = delete;
   InstructionCounter& operator=(const InstructionCounter&) = delete;
   InstructionCounter(InstructionCounter&&) = delete;
@@ -24,9 +29,10 @@ class InstructionCounter {
     return executed() - before - own_;
   }
 
- private:
+  /// So far.
   [[nodiscard]] std::uint64_t executed() const;
 
+ private:
   int counter_;
   std::uint64_t own_ = 0;
 };

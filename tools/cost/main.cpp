@@ -9,9 +9,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cost/instruction_counter.hpp"
+#include "cost/serving_cost.hpp"
 #include "cost/synthetic_picture.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -93,20 +95,41 @@ void count_matching(const InstructionCounter& counter, std::string_view name, st
             counter, steps, [&] { drive.drive(); }, [&] { drive.step(); }));
 }
 
-std::size_t parse_places(std::string_view text) {
-  std::size_t places = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), places);
-  if (error != std::errc() || end != text.data() + text.size() || places < 4) {
-    throw SetupError(Fault{"places", "'" + std::string(text) + "' is no number above 3"});
+std::size_t parse(std::string_view name, std::string_view text, std::size_t least) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number < least) {
+    throw SetupError(Fault{std::string(name), "'" + std::string(text) + "' is no number from " +
+                                                  std::to_string(least) + " on"});
   }
-  return places;
+  return number;
+}
+
+void count_clients(const std::vector<std::size_t>& all) {
+  for (const std::size_t clients : all) {
+    const ServingCost cost = count_serving(clients);
+    const std::string name = std::to_string(clients) + "-clients";
+    for (const auto& [stage, cost_of_one] : {std::pair{"publish", cost.publish},
+                                             {"serve", cost.serve},
+                                             {"serve-kernel", cost.with_kernel},
+                                             {"bytes", cost.bytes}}) {
+      // Which second costs most depends on when pages ask, and says nothing.
+      print(stage, name, 0, {cost_of_one, cost_of_one});
+    }
+  }
 }
 
 constexpr std::string_view usage =
     "usage: seqloop-cost built-in|SQUEEZENET.onnx PLACES...\n"
+    "       seqloop-cost serve CLIENTS...\n"
     "Counts the instructions of each stage of a frame on this thread: one synthetic 640x480 JPEG\n"
     "picture, and a drive through a map of synthetic places. Prints\n"
-    "stage,descriptor,places,instructions_per_frame,most_instructions.\n";
+    "stage,descriptor,places,instructions_per_frame,most_instructions.\n"
+    "serve: of a run at 30 frames a second that so many pages look at. publish is the loop's "
+    "thread,\n"
+    "serve all others, serve-kernel these with what the kernel does for them, bytes what the "
+    "pages\n"
+    "receive; the mean of a frame.\n";
 
 std::unique_ptr<Describer> open(std::string_view model) {
   if (model == "built-in") return opencv::make_builtin_describer();
@@ -140,9 +163,17 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    std::vector<std::size_t> places;
-    for (int i = 2; i < argc; ++i) places.push_back(seqloop::cost::parse_places(argv[i]));
-    seqloop::cost::count(argv[1], places);
+    const bool serves = std::string_view(argv[1]) == "serve";
+    std::vector<std::size_t> numbers;
+    for (int i = 2; i < argc; ++i) {
+      numbers.push_back(serves ? seqloop::cost::parse("clients", argv[i], 0)
+                               : seqloop::cost::parse("places", argv[i], 4));
+    }
+    if (serves) {
+      seqloop::cost::count_clients(numbers);
+    } else {
+      seqloop::cost::count(argv[1], numbers);
+    }
   } catch (const seqloop::SetupError& error) {
     std::fprintf(stderr, "seqloop-cost: %s\n", error.what());
     return 2;

@@ -4,6 +4,19 @@
 #include <algorithm>
 
 namespace seqloop::program {
+namespace {
+
+/// Every n-th pixel of a row. A pixel's size is known here, so that copying one is no call.
+template <std::size_t channels>
+std::uint8_t* pick(const std::uint8_t* in, std::size_t step, int count,
+                   std::uint8_t* out) noexcept {
+  for (int x = 0; x < count; ++x, in += step * channels, out += channels) {
+    for (std::size_t c = 0; c < channels; ++c) out[c] = in[c];
+  }
+  return out;
+}
+
+}  // namespace
 
 bool shrink(const Image& image, std::uint64_t number, int most_width, int most_height,
             SmallPictureFacts& facts, std::span<std::uint8_t> pixels) noexcept {
@@ -21,9 +34,8 @@ bool shrink(const Image& image, std::uint64_t number, int most_width, int most_h
     const std::uint8_t* in = image.data +
                              static_cast<std::size_t>(y * step + step / 2) * image.stride +
                              static_cast<std::size_t>(step / 2) * channels;
-    for (int x = 0; x < facts.width; ++x, in += static_cast<std::size_t>(step) * channels) {
-      out = std::copy_n(in, channels, out);
-    }
+    const auto n = static_cast<std::size_t>(step);
+    out = facts.gray ? pick<1>(in, n, facts.width, out) : pick<3>(in, n, facts.width, out);
   }
   return true;
 }
