@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <cstring>
 
 #include "seqloop/detail/fixed_distance.hpp"
 #include "seqloop/detail/quantised.hpp"
@@ -17,6 +17,9 @@ namespace {
 
 // Whole numbers on their way to differences: few enough for the first-level cache.
 constexpr std::size_t abreast = 256;
+
+// -128 as a byte: values of a descriptor are symmetric.
+constexpr int no_value = 0x80;
 
 constexpr double sketch_bits = 64.0 * static_cast<double>(sketch_words);
 
@@ -115,7 +118,7 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
 void DescriptorRows::sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept {
   if (words_ == 0) return;
   with_negative(bytes.first(form_.size), both_);
-  sketch(both_, sketched_values_, sketches_.subspan(row * words_, words_));
+  seqloop::sketch(both_, sketched_values_, sketches_.subspan(row * words_, words_));
   copy_scanned(row);
 }
 
@@ -123,6 +126,35 @@ void DescriptorRows::copy_scanned(std::size_t row) noexcept {
   if (!form_.scanned) return;
   std::ranges::copy(sketches_.subspan(row * words_, scanned_words),
                     scanned_.subspan(row * scanned_words).begin());
+}
+
+std::uint64_t DescriptorRows::sketch_room(const DescriptorForm& form) noexcept {
+  const bool beside = form.arithmetic == Arithmetic::int8 && form.scanned;
+  return beside ? side_by_side_values(form.size) : 0;
+}
+
+void DescriptorRows::sketch(std::span<const std::size_t> rows,
+                            std::span<std::int8_t> room) noexcept {
+  if (words_ == 0 || rows.empty() || form_.arithmetic == Arithmetic::sketch) return;
+  if (form_.arithmetic == Arithmetic::float32) {
+    for (const std::size_t row : rows) {
+      quantise(exact(row).first(form_.size), quantised_);
+      sketch_row(row, quantised_);
+    }
+    return;
+  }
+  if (rows.size() == 1) return sketch_row(rows.front(), small(rows.front()));
+  // Where there are fewer, the last one is sketched several times.
+  std::array<const std::int8_t*, sketched_together> descriptors;
+  std::array<std::uint64_t*, sketched_together> sketches;
+  for (std::size_t i = 0; i < sketched_together; ++i) {
+    const std::size_t row = rows[std::min(i, rows.size() - 1)];
+    descriptors[i] = small(row).data();
+    sketches[i] = &sketches_[row * words_];
+  }
+  side_by_side(descriptors, form_.size, room);
+  sketch_together(room, sketched_values_, sketches);
+  for (const std::size_t row : rows) copy_scanned(row);
 }
 
 std::size_t DescriptorRows::saved_size() const noexcept {
@@ -166,23 +198,14 @@ bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noe
         values[i] = std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
         finite = finite && std::isfinite(values[i]);
       }
-      if (!finite) return false;
-      if (words_ > 0) quantise(values, quantised_);
-      sketch_row(row, quantised_);
-      return true;
+      return finite;
     }
     case Arithmetic::int8: {
       const std::span<std::int8_t> bytes = small(row);
-      std::int64_t squares = 0;
-      bool symmetric = true;
-      for (std::size_t i = 0; i < saved.size(); ++i) {
-        bytes[i] = static_cast<std::int8_t>(saved[i]);
-        symmetric = symmetric && bytes[i] != std::numeric_limits<std::int8_t>::min();
-        squares += bytes[i] * bytes[i];
-      }
-      if (!symmetric) return false;
-      inverse_lengths_[row] = inverse_length(static_cast<std::int32_t>(squares));
-      sketch_row(row, bytes);
+      std::memcpy(bytes.data(), saved.data(), saved.size());
+      if (std::memchr(saved.data(), no_value, saved.size()) != nullptr) return false;
+      inverse_lengths_[row] =
+          inverse_length(kernels_->dot(bytes.data(), bytes.data(), bytes.size()));
       return true;
     }
     case Arithmetic::sketch:

@@ -2,6 +2,7 @@
 #include "seqloop/place_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -51,6 +52,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
       standardised_(
           arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
+      side_by_side_(arena.take<std::int8_t>("sketches of saved places, while they are made",
+                                            DescriptorRows::sketch_room(rows_.form()))),
       spacing_(
           arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
       first_visits_(arena.take<std::uint64_t>("visits of one place",
@@ -88,12 +91,34 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
   return true;
 }
 
-bool PlaceMap::add_saved(const Saved& place) noexcept {
-  return add_saved_to(order_.sessions() - 1, place).has_value();
+std::size_t PlaceMap::add_saved(std::span<const Saved> places) noexcept {
+  std::array<std::size_t, sketched_together> slots;
+  std::size_t unsketched = 0;
+  std::size_t added = 0;
+  for (const Saved& place : places) {
+    slots[unsketched] = order_.next_slot();
+    if (!insert_unsketched(order_.sessions() - 1, place)) break;
+    ++added;
+    if (++unsketched == slots.size()) {
+      rows_.sketch(slots, side_by_side_);
+      unsketched = 0;
+    }
+  }
+  rows_.sketch(std::span(slots).first(unsketched), side_by_side_);
+  return added;
 }
 
 std::optional<std::size_t> PlaceMap::add_saved_to(std::size_t session,
                                                   const Saved& place) noexcept {
+  const std::array<std::size_t, 1> slot{order_.next_slot()};
+  const std::optional<std::size_t> row = insert_unsketched(session, place);
+  if (row) rows_.sketch(slot, side_by_side_);
+  return row;
+}
+
+/// Puts a place behind the last of a session. @return its row
+std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
+                                                       const Saved& place) noexcept {
   const auto [first, last] = order_.session(session);
   const bool follows = order_.may_give(session, place.number) &&
                        (first == last || place.frame > order_.frame(last - 1)) &&

@@ -2,11 +2,17 @@
 #include "seqloop/detail/sketch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace seqloop {
 namespace {
 
 constexpr std::size_t bits_per_word = 64;
+constexpr std::size_t values_per_word = bits_per_word * values_per_bit;
+
+// Bits that are gathered before they go to their word: as wide as the sums, which lie side by side.
+constexpr std::size_t bits_together = 16;
 
 /// The n-th of a row of random numbers: SplitMix64, which needs no number before.
 std::uint64_t random_number(std::uint64_t n) noexcept {
@@ -14,6 +20,43 @@ std::uint64_t random_number(std::uint64_t n) noexcept {
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
   z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
   return z ^ (z >> 31U);
+}
+
+/// Writes a value of one, then one of the other, and so on. @param out [2 count]
+void alternate(const std::int8_t* one, const std::int8_t* other, std::size_t count,
+               std::int8_t* __restrict out) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    out[2 * i] = one[i];
+    out[2 * i + 1] = other[i];
+  }
+}
+
+/// @param both [2 D, abreast] descriptors side by side, and their negatives
+template <std::size_t abreast>
+void sketches_of(const std::int8_t* both, std::span<const SketchedValue> chosen,
+                 std::span<std::uint64_t* const, abreast> out) noexcept {
+  const SketchedValue* end = chosen.data();
+  for (std::size_t word = 0; word < chosen.size() / values_per_word; ++word) {
+    std::array<std::uint64_t, abreast> whole{};
+    for (std::size_t part = 0; part < bits_per_word; part += bits_together) {
+      end += bits_together * values_per_bit;
+      // The highest bit first: each one moves those that are there on.
+      const SketchedValue* value = end;
+      std::array<std::uint16_t, abreast> bits{};
+      for (std::size_t bit = 0; bit < bits_together; ++bit) {
+        value -= values_per_bit;
+        for (std::size_t i = 0; i < abreast; ++i) {
+          std::int16_t sum = 0;
+          for (std::size_t v = 0; v < values_per_bit; ++v) {
+            sum = static_cast<std::int16_t>(sum + both[value[v] * abreast + i]);
+          }
+          bits[i] = static_cast<std::uint16_t>(bits[i] + bits[i] + (sum > 0 ? 1 : 0));
+        }
+      }
+      for (std::size_t i = 0; i < abreast; ++i) whole[i] |= std::uint64_t{bits[i]} << part;
+    }
+    for (std::size_t i = 0; i < abreast; ++i) out[i][word] = whole[i];
+  }
 }
 
 }  // namespace
@@ -35,16 +78,34 @@ void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_
 
 void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept {
-  const SketchedValue* value = chosen.data();
-  for (std::uint64_t& word : out) {
-    std::uint64_t bits = 0;
-    for (std::size_t bit = 0; bit < bits_per_word; ++bit) {
-      std::int32_t sum = 0;
-      for (std::size_t i = 0; i < values_per_bit; ++i) sum += both[*value++];
-      bits |= static_cast<std::uint64_t>(sum > 0) << bit;
-    }
-    word = bits;
+  const std::array<std::uint64_t*, 1> alone{out.data()};
+  sketches_of<1>(both.data(), chosen, alone);
+}
+
+void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
+                  std::size_t descriptor_size, std::span<std::int8_t> out) noexcept {
+  // Pairs become fours, fours eights: from the second half of the room into the first and back.
+  const std::size_t half = sketched_together * descriptor_size;
+  std::int8_t* to = out.data() + half;
+  std::int8_t* from = out.data();
+  for (std::size_t i = 0; i < sketched_together / 2; ++i) {
+    alternate(descriptors[i], descriptors[i + sketched_together / 2], descriptor_size,
+              to + i * 2 * descriptor_size);
   }
+  for (std::size_t rows = sketched_together / 2; rows > 1; rows /= 2) {
+    std::swap(from, to);
+    const std::size_t length = half / rows;
+    for (std::size_t i = 0; i < rows / 2; ++i) {
+      alternate(from + i * length, from + (i + rows / 2) * length, length, to + i * 2 * length);
+    }
+  }
+  std::transform(to, to + half, from,
+                 [](std::int8_t value) { return static_cast<std::int8_t>(-value); });
+}
+
+void sketch_together(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
+                     std::span<std::uint64_t* const, sketched_together> out) noexcept {
+  sketches_of<sketched_together>(both.data(), chosen, out);
 }
 
 }  // namespace seqloop

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "sqlite/little_endian.hpp"
 #include "sqlite/state.hpp"
 
 namespace seqloop::sqlite {
 namespace {
+
+/// No number is above it.
+constexpr std::int64_t any = std::numeric_limits<std::int64_t>::max();
 
 constexpr const char* session_columns =
     "SELECT id, name, began_ns, settings, frames, places, statistics, form, describer, "
@@ -27,9 +31,12 @@ SavedThumbnail thumbnail_of(const Statement& row) {
   return {static_cast<std::uint64_t>(row.integer(0)), {jpeg.begin(), jpeg.end()}};
 }
 
-/// @param row whole
-std::int64_t last_number(const BlockRow& row) {
-  return static_cast<std::int64_t>(load_u64(row.records.last(record_bytes)));
+/// Those of some numbers that lie within a block's.
+/// @param numbers sorted @param row whole
+std::span<const std::int64_t> among(std::span<const std::int64_t> numbers, const BlockRow& row) {
+  const auto last = static_cast<std::int64_t>(load_u64(row.records.last(record_bytes)));
+  const auto begin = std::ranges::lower_bound(numbers, row.first);
+  return {begin, std::ranges::upper_bound(begin, numbers.end(), last)};
 }
 
 bool is_whole(const SavedThumbnail& picture, std::int64_t checksum) {
@@ -43,7 +50,7 @@ class Kept {
   explicit Kept(std::size_t place_bytes) : place_bytes_(place_bytes) {}
 
   /// @param removed sorted
-  PlaceBlock of(const BlockRow& row, const std::vector<std::int64_t>& removed) {
+  PlaceBlock of(const BlockRow& row, std::span<const std::int64_t> removed) {
     records_ = decode_records(row.records);
     const auto gone = [&removed](const PlaceRecord& record) {
       return std::ranges::binary_search(removed, static_cast<std::int64_t>(record.number));
@@ -105,45 +112,75 @@ std::string MapFile::State::session_name(std::int64_t id) const {
   return "session " + std::to_string(id);
 }
 
-void MapFile::State::read(std::int64_t from, std::int64_t to,
-                          const std::function<void(const PlaceBlock&)>& take,
-                          const std::function<void(const std::string&)>& told) const {
+void MapFile::State::each_row(std::int64_t from, std::int64_t to, const TakeRow& take) const {
+  Statement rows(database, std::string(block_columns) +
+                               "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
+  rows.with(from, to);
+  while (rows.step() && take(block_row(rows))) {
+  }
+}
+
+std::vector<std::int64_t> MapFile::State::removed_of(std::int64_t from, std::int64_t to,
+                                                     const Tell& tell) const {
+  std::vector<std::int64_t> removed;
+  Statement next(database, "SELECT min(first) FROM block WHERE first > ?");
+  const bool more = next.with(to).step() && !next.null(0);
+  Statement gone(
+      database,
+      "SELECT place, checksum FROM removed WHERE place >= ? AND place < ? ORDER BY place");
+  gone.with(from, more ? next.integer(0) : any);
+  while (gone.step()) {
+    if (row_checksum("removed", gone.integer(0)) == gone.integer(1)) {
+      removed.push_back(gone.integer(0));
+    } else {
+      tell("the note that place " + std::to_string(gone.integer(0)) + " was removed");
+    }
+  }
+  return removed;
+}
+
+void MapFile::State::read(std::int64_t from, std::int64_t to, const GiveRows& rows,
+                          const TakeBlock& take, const Tell& told) const {
   const auto tell = [&](const std::string& what) {
     if (!told) throw SetupError(damaged(what));
     told(what);
   };
-  std::string place = "the table of blocks";
-  try {
-    Kept kept(static_cast<std::size_t>(form.place_bytes));
-    std::vector<std::int64_t> removed;
-    Statement gone(database, "SELECT place, checksum FROM removed WHERE place BETWEEN ? AND ?");
-    Statement rows(database, std::string(block_columns) +
-                                 "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
-    rows.with(from, to);
-    while (rows.step()) {
-      const BlockRow row = block_row(rows);
-      place = "what follows the block from place " + std::to_string(row.first);
-      if (!row.whole(form)) {
-        tell("the block from place " + std::to_string(row.first) + " of " +
-             session_name(row.session));
-        continue;
-      }
-      removed.clear();
-      gone.with(row.first, last_number(row));
-      while (gone.step()) {
-        if (row_checksum("removed", gone.integer(0)) == gone.integer(1)) {
-          removed.push_back(gone.integer(0));
-        } else {
-          tell("the note that place " + std::to_string(gone.integer(0)) + " was removed");
-        }
-      }
-      const PlaceBlock block = kept.of(row, removed);
-      if (!block.records.empty()) take(block);
+  const auto attempt = [&](const auto& what, const auto& part) {
+    try {
+      part();
+    } catch (const DatabaseError& error) {
+      if (!told || error.primary() != SQLITE_CORRUPT) throw SetupError(fault_of(path, error));
+      tell(what());
     }
-  } catch (const DatabaseError& error) {
-    if (!told || error.primary() != SQLITE_CORRUPT) throw SetupError(fault_of(path, error));
-    tell(place);
+  };
+  std::vector<std::int64_t> removed;
+  attempt([] { return "the table of removed places"; },
+          [&] { removed = removed_of(from, to, tell); });
+  Kept kept(static_cast<std::size_t>(form.place_bytes));
+  std::vector<BlockRow> wrong;  // told of at the end: until then another thread may be reading
+  std::optional<std::int64_t> newest;
+  const auto take_row = [&](const BlockRow& row) {
+    newest = row.first;
+    if (!row.whole(form)) {
+      wrong.push_back(row);
+      return static_cast<bool>(told);
+    }
+    const PlaceBlock block = kept.of(row, among(removed, row));
+    if (!block.records.empty()) take(block);
+    return true;
+  };
+  const auto rest = [&newest] {
+    if (!newest) return std::string("the table of blocks");
+    return "what follows the block from place " + std::to_string(*newest);
+  };
+  attempt(rest, [&] { rows(take_row); });
+  for (const BlockRow& row : wrong) {
+    tell("the block from place " + std::to_string(row.first) + " of " + session_name(row.session));
   }
+}
+
+void MapFile::State::read(std::int64_t from, std::int64_t to, const TakeBlock& take) const {
+  read(from, to, [&](const TakeRow& take_row) { each_row(from, to, take_row); }, take, {});
 }
 
 std::vector<SessionFacts> MapFile::sessions() const {
@@ -158,7 +195,11 @@ void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
     missing -= block.records.size();
     take(block);
   };
-  state_->read(0, std::numeric_limits<std::int64_t>::max(), counted, damaged);
+  const GiveRows rows = [this](const TakeRow& take_row) {
+    RowsAhead ahead([this](const TakeRow& keep) { state_->each_row(0, any, keep); });
+    ahead.give(take_row);
+  };
+  state_->read(0, any, rows, counted, damaged);
   if (missing != 0 && !damaged)
     throw SetupError(state_->damaged("the table of blocks or of removed places"));
 }

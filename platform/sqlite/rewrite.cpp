@@ -115,26 +115,23 @@ std::size_t MapFile::retire(const std::string& session, std::uint64_t first, std
       if (end < signed_of(first) || blocks[i] > signed_of(last)) continue;
       std::vector<PlaceRecord> left;
       std::vector<std::byte> bytes;
-      map.read(
-          blocks[i], blocks[i],
-          [&](const PlaceBlock& block) {
-            const std::size_t size = block.places.size() / block.records.size();
-            for (std::size_t at = 0; at < block.records.size(); ++at) {
-              const PlaceRecord& record = block.records[at];
-              if (record.number < first || record.number > last) {
-                left.push_back(record);
-                const auto place = block.places.subspan(at * size, size);
-                bytes.insert(bytes.end(), place.begin(), place.end());
-                continue;
-              }
-              --facts.places;
-              const Successor* next = successor_of(successors, record.number);
-              if (next == nullptr) continue;
-              if (!visits.empty() && record.frame - visits.back().frame < every) continue;
-              visits.push_back({facts.id, record.frame, std::nullopt, next->by, next->probability});
-            }
-          },
-          {});
+      map.read(blocks[i], blocks[i], [&](const PlaceBlock& block) {
+        const std::size_t size = block.places.size() / block.records.size();
+        for (std::size_t at = 0; at < block.records.size(); ++at) {
+          const PlaceRecord& record = block.records[at];
+          if (record.number < first || record.number > last) {
+            left.push_back(record);
+            const auto place = block.places.subspan(at * size, size);
+            bytes.insert(bytes.end(), place.begin(), place.end());
+            continue;
+          }
+          --facts.places;
+          const Successor* next = successor_of(successors, record.number);
+          if (next == nullptr) continue;
+          if (!visits.empty() && record.frame - visits.back().frame < every) continue;
+          visits.push_back({facts.id, record.frame, std::nullopt, next->by, next->probability});
+        }
+      });
       (void)drop(map, "block WHERE first = ?", blocks[i]);
       (void)drop(map, "removed WHERE place BETWEEN ? AND ?", blocks[i], end);
       if (!left.empty()) map.insert_block(facts.id, left, bytes);
@@ -175,13 +172,11 @@ std::uint64_t MapFile::add(const MapFile& from) {
         return numbers_of(from.state_->database, facts.id, signed_of(from.next_place()));
       });
       std::vector<PlaceRecord> records;
-      from.state_->read(numbers.first, numbers.last,
-                        [&](const PlaceBlock& block) {
-                          records.assign(block.records.begin(), block.records.end());
-                          for (PlaceRecord& record : records) record.number += added;
-                          save(id, {.records = records, .places = block.places});
-                        },
-                        {});
+      from.state_->read(numbers.first, numbers.last, [&](const PlaceBlock& block) {
+        records.assign(block.records.begin(), block.records.end());
+        for (PlaceRecord& record : records) record.number += added;
+        save(id, {.records = records, .places = block.places});
+      });
       std::vector<SavedThumbnail> pictures;
       from.read_thumbnails([&](const SavedThumbnail& picture) {
         const std::int64_t place = signed_of(picture.place);
@@ -223,16 +218,13 @@ void MapFile::compact() {
     };
     const std::size_t most = block_places(map.form);
     for (const std::int64_t first : blocks) {
-      map.read(first, first,
-               [&](const PlaceBlock& block) {
-                 if (block.session != session || records.size() + block.records.size() > most)
-                   write();
-                 session = block.session;
-                 records.insert(records.end(), block.records.begin(), block.records.end());
-                 places.insert(places.end(), block.places.begin(), block.places.end());
-                 for (const PlaceRecord& record : block.records) living.push_back(record.number);
-               },
-               {});
+      map.read(first, first, [&](const PlaceBlock& block) {
+        if (block.session != session || records.size() + block.records.size() > most) write();
+        session = block.session;
+        records.insert(records.end(), block.records.begin(), block.records.end());
+        places.insert(places.end(), block.places.begin(), block.places.end());
+        for (const PlaceRecord& record : block.records) living.push_back(record.number);
+      });
       replaced.push_back(first);
     }
     write();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,9 +10,13 @@
 #include "seqloop/sqlite/map_file.hpp"
 #include "sqlite/database.hpp"
 #include "sqlite/holder.hpp"
+#include "sqlite/rows_ahead.hpp"
 #include "sqlite/schema.hpp"
 
 namespace seqloop::sqlite {
+
+using TakeBlock = std::function<void(const PlaceBlock&)>;
+using Tell = std::function<void(const std::string&)>;
 
 /// What an open map is made of. The lock goes last.
 struct MapFile::State {
@@ -83,8 +88,15 @@ struct MapFile::State {
   /// Removes one place, where there is such a one, in the open transaction.
   void remove_place(std::int64_t number);
   /// Blocks whose first number is in a range; what was removed of them is left out.
-  void read(std::int64_t from, std::int64_t to, const std::function<void(const PlaceBlock&)>& take,
-            const std::function<void(const std::string&)>& damaged) const;
+  void read(std::int64_t from, std::int64_t to, const TakeBlock& take) const;
+  /// The same of rows that somebody else reads. @param told of what is damaged; none: SetupError
+  void read(std::int64_t from, std::int64_t to, const GiveRows& rows, const TakeBlock& take,
+            const Tell& told) const;
+  /// Their rows, as they are in the file. Throws DatabaseError.
+  void each_row(std::int64_t from, std::int64_t to, const TakeRow& take) const;
+  /// Numbers of places that were removed of them, sorted. Throws DatabaseError.
+  [[nodiscard]] std::vector<std::int64_t> removed_of(std::int64_t from, std::int64_t to,
+                                                     const Tell& tell) const;
 };
 
 /// Reads what the statement stands at: first, session, count, checksum, records, places.

@@ -38,6 +38,26 @@ std::vector<FrameReport> run_through(PlaceMap& map, const Vectors& query,
   return all;
 }
 
+/// Puts places of a session into another map, in batches of 1, 2, 3 and so on.
+void put_back(const PlaceMap& map, PlaceMap& into) {
+  const std::size_t size = map.rows().saved_size();
+  std::vector<std::byte> bytes(map.size() * size);
+  std::vector<PlaceMap::Saved> places;
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    const std::span<std::byte> place = std::span(bytes).subspan(row * size, size);
+    map.rows().save(map.order().slot(row), place);
+    places.push_back({map.order().number(row), map.order().frame(row), place});
+  }
+  std::size_t batch = 1;
+  for (std::size_t first = 0; first < places.size(); first += batch++) {
+    const auto some = std::span(places).subspan(first, std::min(batch, places.size() - first));
+    ASSERT_EQ(into.add_saved(some), some.size());
+  }
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    into.set_first_visit(row, map.first_visit(row));
+  }
+}
+
 /// A report of one of the maps that the sessions are, one by one.
 struct OfOne {
   const Match* match;
@@ -232,12 +252,7 @@ TEST_P(Sessions, WhatIsSavedAndPutBackAnswersAlike) {
       ASSERT_TRUE(map.set_statistics(mean, variance, learnt.frames()));
       ASSERT_TRUE(loaded.set_statistics(mean, variance, learnt.frames()));
     }
-    std::vector<std::byte> bytes(map.rows().saved_size());
-    for (std::size_t row = 0; row < map.size(); ++row) {
-      map.rows().save(map.order().slot(row), bytes);
-      ASSERT_TRUE(loaded.add_saved({map.order().number(row), map.order().frame(row), bytes}));
-      loaded.set_first_visit(row, map.first_visit(row));
-    }
+    put_back(map, loaded);
     const std::vector<FrameReport> wanted = run_through(map, second, config);
     const std::vector<FrameReport> got = run_through(loaded, second, config);
     std::size_t matches = 0;
@@ -310,6 +325,40 @@ TEST(MapOfSessions, ADriveNeedsRoomForItsOwn) {
   config.use = Use::localise;
   const Detector reads_only(config, map);
   EXPECT_EQ(map.order().sessions(), 1U);
+}
+
+TEST(MapOfSessions, PutBackTogetherTheyHaveTheSketchesOfEach) {
+  for (const Arithmetic arithmetic : {Arithmetic::float32, Arithmetic::int8, Arithmetic::sketch}) {
+    MatcherConfig config;
+    config.arithmetic = arithmetic;
+    PlaceMap map(config, {40, 50, 1});
+    for (const auto& place : oracle::drive(3, 40, 50)) ASSERT_TRUE(map.add(place));
+    PlaceMap loaded(config, {40, 50, 1});
+    put_back(map, loaded);
+    ASSERT_EQ(loaded.size(), 40U);
+    std::vector<std::uint32_t> bits(map.size());
+    std::vector<std::uint32_t> loaded_bits(map.size());
+    for (std::size_t row = 0; row < map.size(); ++row) {
+      EXPECT_EQ(map.rows().look_closely(loaded.rows(), row, row), 0U) << row;
+      map.rows().scan(map.rows(), row, 0, bits);
+      loaded.rows().scan(map.rows(), row, 0, loaded_bits);
+      EXPECT_EQ(loaded_bits, bits) << row;
+    }
+  }
+}
+
+TEST(MapOfSessions, PutBackTogetherUpToWhatDoesNotFit) {
+  const MatcherConfig config;
+  PlaceMap map(config, {40, 4, 1});
+  std::vector<std::vector<std::byte>> bytes(30, std::vector<std::byte>(4, std::byte{5}));
+  bytes[20][3] = std::byte{0x80};
+  std::vector<PlaceMap::Saved> places;
+  for (std::size_t i = 0; i < bytes.size(); ++i) places.push_back({i, i, bytes[i]});
+  EXPECT_EQ(map.add_saved(places), 20U);
+  EXPECT_EQ(map.size(), 20U);
+  EXPECT_EQ(map.rows().look_closely(map.rows(), 0, 19), 0U) << "sketched before that";
+  EXPECT_EQ(map.add_saved(std::span(places).subspan(21)), 9U);
+  EXPECT_EQ(map.add_saved(std::span<const PlaceMap::Saved>()), 0U);
 }
 
 TEST(MapOfSessions, PutBackOnlyWhatFits) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -83,6 +84,33 @@ TEST(Sketch, BeginsWithTheShorterOne) {
   const Words longer = sketched(descriptor, 40);
   EXPECT_TRUE(std::ranges::equal(shorter, std::span(longer).first(3)));
   EXPECT_TRUE(sketched(descriptor, 0).empty());
+}
+
+TEST(Sketch, OfManyTogetherIsThatOfEach) {
+  std::mt19937 random(33);
+  for (const std::size_t size : {1U, 2U, 31U, 128U, 735U}) {
+    for (const std::size_t words : {1U, 16U, 32U}) {
+      std::vector<Bytes> descriptors(sketched_together, Bytes(size));
+      std::array<const std::int8_t*, sketched_together> rows{};
+      std::vector<Words> sketches(sketched_together, Words(words));
+      std::array<std::uint64_t*, sketched_together> out{};
+      for (std::size_t i = 0; i < sketched_together; ++i) {
+        for (std::int8_t& value : descriptors[i]) {
+          value = static_cast<std::int8_t>(random() % 255U - 127U);
+        }
+        rows[i] = descriptors[i].data();
+        out[i] = sketches[i].data();
+      }
+      std::vector<SketchedValue> chosen(sketched_values(words));
+      choose_sketched_values(size, chosen);
+      Bytes both(side_by_side_values(size));
+      side_by_side(rows, size, both);
+      sketch_together(both, chosen, out);
+      for (std::size_t i = 0; i < sketched_together; ++i) {
+        EXPECT_EQ(sketches[i], sketched(descriptors[i], words)) << size << ' ' << words << ' ' << i;
+      }
+    }
+  }
 }
 
 TEST(Sketch, IsTheSameOnEveryProcessor) {

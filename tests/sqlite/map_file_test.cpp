@@ -146,6 +146,33 @@ TEST_F(Map, TakesPlacesOfAnySize) {
   }
 }
 
+TEST_F(Map, ReadingThatIsGivenUpLeavesItAsItWas) {
+  sqlite::MapForm form = test::sample_form();
+  form.place_bytes = 100'000;
+  MapFile map = MapFile::open(file(), form);
+  const std::int64_t id = map.begin_session("a", 0, "");
+  for (std::uint64_t batch = 0; batch < 10; ++batch) test::save_sample(map, id, batch * 9, 9);
+  // Batches are read ahead: given up with none, some and all of them waiting.
+  for (const std::size_t blocks : {0U, 1U, 4U, 9U}) {
+    std::size_t taken = 0;
+    const auto give_up = [&](const sqlite::PlaceBlock&) {
+      if (taken++ == blocks) throw std::runtime_error("enough");
+    };
+    EXPECT_THROW(map.read(give_up), std::runtime_error);
+    EXPECT_EQ(taken, blocks + 1);
+  }
+  std::uint64_t next = 0;
+  map.read([&](const sqlite::PlaceBlock& block) {
+    for (std::size_t i = 0; i < block.records.size(); ++i) {
+      ASSERT_EQ(block.records[i].number, next);
+      const auto place = block.places.subspan(i * form.place_bytes, form.place_bytes);
+      ASSERT_TRUE(std::ranges::equal(place, test::sample_place(next, form.place_bytes)));
+      ++next;
+    }
+  });
+  EXPECT_EQ(next, 90U);
+}
+
 TEST_F(Map, RefusesBatchesThatDoNotFit) {
   MapFile map = open();
   const std::int64_t first = map.begin_session("a", 0, "");

@@ -86,6 +86,7 @@ void StoredMap::load(PlaceMap& map) {
   };
   Progress progress("loading", places_);
   const std::size_t bytes = map.rows().saved_size();
+  std::vector<PlaceMap::Saved> places;
   std::optional<std::int64_t> newest;
   file_.read([&](const sqlite::PlaceBlock& block) {
     stop_if_interrupted();
@@ -93,13 +94,15 @@ void StoredMap::load(PlaceMap& map) {
       throw damaged("it has more sessions than it says");
     }
     newest = block.session;
+    places.clear();
     for (std::size_t i = 0; i < block.records.size(); ++i) {
       const sqlite::PlaceRecord& record = block.records[i];
-      if (!map.add_saved({record.number, record.frame, block.places.subspan(i * bytes, bytes)})) {
-        throw damaged(fmt::format("place {} is none that can follow", record.number));
-      }
-      progress.step();
+      places.push_back({record.number, record.frame, block.places.subspan(i * bytes, bytes)});
     }
+    if (const std::size_t added = map.add_saved(places); added != places.size()) {
+      throw damaged(fmt::format("place {} is none that can follow", places[added].number));
+    }
+    progress.step(places.size());
   });
   progress.done();
   map.count_from(file_.next_place());

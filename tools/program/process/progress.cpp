@@ -20,8 +20,8 @@ constexpr std::string_view clear_line = "\r\033[K";
 Progress::Progress(std::string doing, std::optional<std::uint64_t> frames)
     : doing_(std::move(doing)), frames_(frames), shown_(isatty(STDERR_FILENO) == 1) {}
 
-void Progress::step() {
-  ++done_;
+void Progress::step(std::uint64_t frames) {
+  done_ += frames;
   if (!shown_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - drawn_ < std::chrono::milliseconds(100)) return;

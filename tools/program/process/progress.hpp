@@ -17,8 +17,8 @@ class Progress {
   /// Draws nothing; `tell` still tells.
   Progress() = default;
 
-  /// One frame more is done.
-  void step();
+  /// So many frames more are done.
+  void step(std::uint64_t frames = 1);
 
   /// Prints a line of its own, as `seqloop: MESSAGE`, terminal or not.
   void tell(std::string_view message);

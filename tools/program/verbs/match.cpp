@@ -22,6 +22,7 @@
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/files/output_file.hpp"
+#include "seqloop/linux/touched_memory.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -92,7 +93,8 @@ void match(const MatchSettings& settings, Faults faults) {
       lasting ? lasting->capacity(query->rows)
               : Capacity{reference ? reference->rows : query->rows, query->columns};
   suit_slice(config, settings.matcher, capacity.places);
-  PlaceMap map(config, capacity);
+  const live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
+  PlaceMap map(config, capacity, memory.span());
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
@@ -101,7 +103,8 @@ void match(const MatchSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (lasting) lasting->load(map);
-  Detector detector(config, map);
+  const live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
+  Detector detector(config, map, working_memory.span());
   if (lasting) lasting->begin(map, config, settings.matcher.method);
   Progress progress("matching", query->rows);
   MatchWatch watch{&progress, stop_if_interrupted};

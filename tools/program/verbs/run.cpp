@@ -31,6 +31,7 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
+#include "seqloop/linux/touched_memory.hpp"
 #include "seqloop/pipeline.hpp"
 
 namespace seqloop::program {
@@ -118,7 +119,10 @@ void run(const RunSettings& settings, Faults faults) {
   }
 
   // Start-up: the map, then every path once, before the first frame counts.
-  PlaceMap map = with_room(setup, [&] { return PlaceMap(setup.config, setup.capacity()); });
+  const live::TouchedMemory memory = with_room(setup, [&] {
+    return live::TouchedMemory(PlaceMap::bytes_needed(setup.config, setup.capacity()));
+  });
+  PlaceMap map(setup.config, setup.capacity(), memory.span());
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     const auto look = [&](const Frame& frame) {
@@ -131,7 +135,10 @@ void run(const RunSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (setup.map) setup.map->load(map);
-  Detector detector = with_room(setup, [&] { return Detector(setup.config, map); });
+  const live::TouchedMemory working_memory = with_room(setup, [&] {
+    return live::TouchedMemory(Detector::bytes_needed(setup.config, setup.capacity()));
+  });
+  Detector detector(setup.config, map, working_memory.span());
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
   PictureRecorder recorder(setup.config.difference);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/linux/touched_memory.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "seqloop/fault.hpp"
+
+namespace seqloop::live {
+namespace {
+
+// What a thread touches at least: some milliseconds' worth.
+constexpr std::size_t least_share = std::size_t{16} << 20U;
+
+/// Linux has this from 5.14 on; before, pages come when they are first written to.
+void touch(std::span<std::byte> memory) noexcept {
+#ifdef MADV_POPULATE_WRITE
+  ::madvise(memory.data(), memory.size(), MADV_POPULATE_WRITE);
+#else
+  static_cast<void>(memory);
+#endif
+}
+
+}  // namespace
+
+TouchedMemory::TouchedMemory(std::uint64_t bytes) {
+  const auto size = static_cast<std::size_t>(bytes);
+  void* const taken = size == bytes ? ::mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                                             MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                                    : MAP_FAILED;
+  if (taken == MAP_FAILED) {
+    throw SetupError({"memory", std::to_string(bytes) + " bytes are not to be had",
+                      "lower the capacity; `plan` shows what each buffer takes"});
+  }
+  span_ = {static_cast<std::byte*>(taken), size};
+  // Shares are whole numbers of pages, up to the last one's end.
+  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t share = (size / processors / least_share + 1) * least_share;
+  std::vector<std::jthread> others;
+  for (std::size_t first = share; first < size; first += share) {
+    others.emplace_back(touch, span_.subspan(first, std::min(share, size - first)));
+  }
+  touch(span_.first(std::min(share, size)));
+}
+
+TouchedMemory::TouchedMemory(TouchedMemory&& other) noexcept
+    : span_(std::exchange(other.span_, {})) {}
+
+TouchedMemory::~TouchedMemory() {
+  if (!span_.empty()) ::munmap(span_.data(), span_.size());
+}
+
+}  // namespace seqloop::live
