@@ -34,7 +34,7 @@ constexpr std::size_t neighbours = 16;
 // Bits that differ between pictures that have nothing in common.
 constexpr std::uint32_t chance = DescriptorRows::close_words * 64 / 2;
 
-/// Of so many, known here, that they are compared side by side; signed, as every processor can.
+/// Of a number known here, so that they are compared side by side; signed, as every processor can.
 std::uint32_t least_of(std::span<const std::uint32_t, neighbours> bits) {
   auto least = static_cast<std::int32_t>(bits[0]);
   for (const std::uint32_t b : bits) least = std::min(least, static_cast<std::int32_t>(b));

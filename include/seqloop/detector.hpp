@@ -107,8 +107,8 @@ class Detector {
   /// drive starts from. `frames() == 0` where nothing is.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
-  /// A full map may forget places, but none of the newest so many: they are still needed elsewhere,
-  /// or are to be saved first. 0 at first.
+  /// A full map may forget places, but none of the newest `places`: they are still needed
+  /// elsewhere, or are to be saved first. 0 at first.
   void keep_newest(std::size_t places) noexcept { keep_ = places; }
 
   /// What is believed at the newest frame, and what for: where the decision is by probability.

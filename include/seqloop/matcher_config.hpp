@@ -129,7 +129,7 @@ struct Capacity {
 /// Whether a frame has candidate ranges and a part of the map to scan, and never all rows.
 [[nodiscard]] bool relocalises(const MatcherConfig& config) noexcept;
 
-/// Whether places have sketches by which each frame looks at a slice of the map: to relocalise, or
+/// Whether places have sketches by which each frame looks at part of the map: to relocalise, or
 /// to decide by probability.
 [[nodiscard]] bool scans(const MatcherConfig& config) noexcept;
 

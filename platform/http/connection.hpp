@@ -31,7 +31,7 @@ class Connection : public httplib::Stream {
   /// Waits for the next request. @param head line and headers, with the empty line
   [[nodiscard]] Got read_head(std::string& head);
 
-  /// What `read` brings from here on: this head, and so many bytes of the body.
+  /// What `read` brings from here on: this head, and as many bytes of the body.
   void pass_on(std::string head, std::size_t body);
 
   /// Writes all of it. @return false when the client is gone or takes nothing

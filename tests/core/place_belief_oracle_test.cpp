@@ -160,20 +160,20 @@ class NaiveBelief {
         std::ranges::max_element(rows_, {}, [](const auto& at) { return at.second.mass; });
     likeliest = best->first;
     double big = 0.0;
-    double rival = -2.0;
+    double wrong = -2.0;
     for (const auto& [other, at] : rows_) {
       if (other + 10 >= likeliest && other <= likeliest + 10) {
         big += at.mass;
       } else {
-        rival = std::max(rival, at.gain);
+        wrong = std::max(wrong, at.gain);
       }
     }
-    if (new_place > 0.5) rival = std::max(rival, best->second.gain);
+    if (new_place > 0.5) wrong = std::max(wrong, best->second.gain);
     if (w > 0.02) {
-      if (weight_ == 0.0) mean_ = rival;
+      if (weight_ == 0.0) mean_ = wrong;
       const double a = 1.0 / std::min(weight_ + 1.0, 300.0);
       weight_ += 2.0 * w;
-      const double off = rival - mean_;
+      const double off = wrong - mean_;
       mean_ += a * off;
       variance_ = (1.0 - a) * (variance_ + a * off * off);
     }

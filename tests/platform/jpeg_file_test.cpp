@@ -226,7 +226,7 @@ std::size_t address_space() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// What is said in a process that can take only so many bytes more.
+/// What is said in a process that can take only a few bytes more.
 template <class Work>
 std::string said_with_memory(std::size_t more, Work work) {
   const TemporaryFolder folder;

@@ -125,7 +125,7 @@ constexpr std::string_view usage =
     "Counts the instructions of each stage of a frame on this thread: one synthetic 640x480 JPEG\n"
     "picture, and a drive through a map of synthetic places. Prints\n"
     "stage,descriptor,places,instructions_per_frame,most_instructions.\n"
-    "serve: of a run at 30 frames a second that so many pages look at. publish is the loop's "
+    "serve: of a run at 30 frames a second that a number of pages look at. publish is the loop's "
     "thread,\n"
     "serve all others, serve-kernel these with what the kernel does for them, bytes what the "
     "pages\n"

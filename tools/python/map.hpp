@@ -24,7 +24,7 @@ class Map {
   Map(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
       const pybind11::kwargs& settings);
 
-  /// In a file. @param places room for so many; none: for what it has, and 20,000 more
+  /// In a file. @param places how many there is room for; none: for what it has, and 20,000 more
   /// @param settings also those of maps in files
   /// Throws SetupError, also where this build has no maps in files.
   [[nodiscard]] static std::unique_ptr<Map> open(const std::filesystem::path& file,

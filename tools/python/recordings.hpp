@@ -18,7 +18,7 @@ namespace seqloop::python {
 [[nodiscard]] files::Matrix matrix(const Array& array, const std::string& name,
                                    Difference difference);
 
-/// What the settings say of a map of so many places; adds what is wrong with them.
+/// What the settings say of a map of that many places; adds what is wrong with them.
 [[nodiscard]] MatcherConfig config_of(Use use, std::size_t places, const pybind11::kwargs& settings,
                                       Faults& faults);
 

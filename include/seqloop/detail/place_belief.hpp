@@ -44,7 +44,7 @@ class PlaceBelief {
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
   std::size_t observe(const SceneView& view) noexcept;
 
-  /// Frames went by unseen, and the robot moved on by so many rows in each.
+  /// Frames went by unseen, and the robot moved on by this many rows in each.
   void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
 
   /// A row went from the map: those behind it are counted one lower.

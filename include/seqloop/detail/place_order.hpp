@@ -84,7 +84,7 @@ class PlaceOrder {
   }
   static constexpr std::size_t far = static_cast<std::size_t>(-1);
 
-  /// The row so many rows before another, or the first of its session.
+  /// The row that lies this many rows before another, or the first of its session.
   [[nodiscard]] std::size_t before(std::size_t row, std::size_t by) const noexcept {
     return std::max(around(row).first, row - std::min(row, by));
   }

@@ -195,7 +195,7 @@ const char* what_differs(FigureKind kind) {
 }
 
 std::string note_of(const Chosen& results, const Figure& figure) {
-  const std::string note = how_to_read(figure.kind);
+  std::string note = how_to_read(figure.kind);
   Names names = figure.line;
   if (!figure.panel.empty()) names.push_back(figure.panel);
   if (figure.kind == FigureKind::measure) names.push_back(figure.x);

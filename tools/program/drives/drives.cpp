@@ -36,6 +36,7 @@ void set_training(std::vector<std::filesystem::path>& drives, std::string_view t
 std::vector<FileUse> all_read(const std::string& flag,
                               const std::vector<std::filesystem::path>& paths) {
   std::vector<FileUse> uses;
+  uses.reserve(paths.size());
   for (const std::filesystem::path& path : paths) uses.push_back({flag, Access::reads, path});
   return uses;
 }

@@ -7,8 +7,8 @@
 
 namespace seqloop::program {
 
-/// What may still be sent, so that it is so many kilobits a second on average, and no more than one
-/// second's at a time.
+/// What may still be sent, so that it is a given number of kilobits a second on average, and no
+/// more than one second's at a time.
 class Allowance {
  public:
   using Clock = std::chrono::steady_clock;

@@ -82,7 +82,8 @@ class Fleet::Impl {
         "frames closed loops with them",
         counts.told, counts.heard, counts.sessions, loops_);
     if (counts.untold > 0) {
-      text += fmt::format("; {} were not told, for the network or --fleet-kbps is too slow", counts.untold);
+      text += fmt::format("; {} were not told, for the network or --fleet-kbps is too slow",
+                          counts.untold);
     }
     if (refused_ > 0) text += fmt::format("; {} of others' are none that can be", refused_);
     return text;

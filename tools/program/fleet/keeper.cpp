@@ -29,7 +29,7 @@ constexpr std::size_t most_waiting = 16'384;
 // Links of a place, on average: what many robots tell is bounded.
 constexpr std::size_t links_a_place = 8;
 
-// What all places of a session have in common is said again with every so many.
+// What all places of a session have in common is said again with every one of these.
 constexpr std::uint64_t said_every = 64;
 
 // A robot tells it from this probability on.

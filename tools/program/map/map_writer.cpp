@@ -14,7 +14,7 @@ namespace {
 // Places that are saved at once: a batch is in memory twice.
 constexpr std::uint64_t most_at_once = 4096;
 
-// Rows between two that are linked are linked as well, so many at most.
+// Rows between two that are linked are linked as well, up to this many.
 constexpr std::size_t most_between = 40;
 
 // Saving that takes longer is told.

@@ -10,7 +10,7 @@
 namespace seqloop::program {
 namespace {
 
-// A visit is kept for so many frames: fewer would let the file grow with the time driven.
+// A visit is kept for this many frames: fewer would let the file grow with the time driven.
 constexpr std::uint64_t frames_a_visit = 16;
 
 // A session of twice as many places or more is looked at in parts: a drive of many laps shrinks,

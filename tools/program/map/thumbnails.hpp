@@ -39,7 +39,7 @@ class Thumbnails {
 
   // The saving thread's side.
 
-  /// Copies the oldest ones that wait, of places below this number. @param most so many at most
+  /// Copies the oldest ones that wait, of places below this number. @param most how many at most
   [[nodiscard]] std::vector<sqlite::SavedThumbnail> waiting(std::uint64_t below,
                                                             std::size_t most) const;
   /// So many of these are saved.

@@ -8,11 +8,11 @@
 
 namespace seqloop::turbojpeg {
 
-/// Decodes the JPEG pictures of a camera or a motion JPEG video, no further than needed: grey from the luma alone (full
-/// range), and at the smallest of 1/8, 1/4, 1/2 and 1/1 of the size that is as large as needed both
-/// ways. A reduced picture is not quite the averaged whole: at just the descriptor's size, the
-/// built-in one of Gardens Point's frames moves by 0.06 (day) and 0.09 (night) on average, where
-/// neighbouring frames are 0.46 apart.
+/// Decodes the JPEG pictures of a camera or a motion JPEG video, no further than needed: grey from
+/// the luma alone (full range), and at the smallest of 1/8, 1/4, 1/2 and 1/1 of the size that is as
+/// large as needed both ways. A reduced picture is not quite the averaged whole: at just the
+/// descriptor's size, the built-in one of Gardens Point's frames moves by 0.06 (day) and 0.09
+/// (night) on average, where neighbouring frames are 0.46 apart.
 ///
 /// A frame without Huffman tables, as many cameras send them, has the standard ones. Nothing is
 /// kept from frame to frame: the same bytes give the same picture or fault whatever came before.
