@@ -59,6 +59,7 @@ std::vector<Retired> retire_superseded(StoredMap& stored, const PlaceMap& map,
   try {
     const std::vector<Stretch> all = stretches(stored, map, linked, none);
     std::vector<std::vector<Sighting>> places;
+    places.reserve(all.size());
     for (const Stretch& stretch : all) places.push_back(stretch.places);
     const std::vector<std::size_t> gone = superseded(places);
     std::vector<Sighting> stays;
