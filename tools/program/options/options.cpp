@@ -120,7 +120,7 @@ void OptionTable::on_off(std::string name, bool& target, std::string help) {
        [&target](std::string_view value) { target = parse_on_off(value); }});
 }
 
-void OptionTable::folder(std::string name, std::filesystem::path& target,
+void OptionTable::folder(const std::string& name, std::filesystem::path& target,
                          std::vector<std::string> files, std::string help) {
   const auto uses = [&target, name, files = std::move(files)] {
     std::vector<FileUse> all;

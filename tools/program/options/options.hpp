@@ -56,8 +56,8 @@ class OptionTable {
   /// A path says what becomes of what it names.
   void path(std::string name, Access access, std::filesystem::path& target, std::string help);
   /// A folder to fill. @param files that are known beforehand to come there
-  void folder(std::string name, std::filesystem::path& target, std::vector<std::string> files,
-              std::string help);
+  void folder(const std::string& name, std::filesystem::path& target,
+              std::vector<std::string> files, std::string help);
   void on_off(std::string name, bool& target, std::string help);
   void add(Option option);
 
