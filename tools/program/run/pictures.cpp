@@ -142,6 +142,7 @@ bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>&
 
 Pictures frames_of(const PictureRecorder::Reopen& drive, const std::vector<Answer>& answers) {
   std::vector<std::uint64_t> frames;
+  frames.reserve(answers.size());
   for (const Answer& answer : answers) frames.push_back(answer.frame);
   return fetch(*drive(), frames);
 }
@@ -224,6 +225,7 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
                                   const Reopen& reference) const {
   const std::vector<Answer> some = chosen();
   std::vector<std::uint64_t> places;
+  places.reserve(some.size());
   for (const Answer& answer : some) places.push_back(answer.match->place);
   const auto name = [](std::uint64_t place) { return fmt::format("is place {}", place); };
   return write_sheet(folder, some, frames_of(query, some), fetch(*reference(), places), name);

@@ -50,7 +50,8 @@ std::string edge(std::uint64_t from, std::uint64_t to, const Pose& motion, doubl
 }
 
 std::unique_ptr<files::OutputFile> opened(const std::filesystem::path& path) {
-  return path.empty() ? nullptr : std::make_unique<files::OutputFile>(path);
+  if (path.empty()) return nullptr;
+  return std::make_unique<files::OutputFile>(path);
 }
 
 }  // namespace

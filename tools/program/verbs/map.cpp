@@ -170,7 +170,7 @@ void work_on_map(const MapSettings& settings, Faults faults) {
     faults.push_back({words.empty() ? "map" : "'" + words[0] + "'",
                       words.empty() ? "what is to be done with it?" : "maps cannot do that",
                       meant.empty() ? "see seqloop map --help" : "did you mean '" + meant + "'?"});
-    refuse(std::move(faults));
+    return refuse(std::move(faults));
   }
   const std::size_t given = words.size() - 1;
   if (given < asked->least || given > asked->most) {
