@@ -27,6 +27,14 @@ def command(*words: object, check: bool = True) -> str:
     return subprocess.run([str(word) for word in words], check=check, capture_output=True, text=True).stdout
 
 
+def ask_for_namespaces() -> None:
+    """Ends with 77 where there are none to be had."""
+    if os.geteuid() != 0 or subprocess.run(["ip", "netns", "add", "seqloopx"], capture_output=True).returncode != 0:
+        print("network namespaces cannot be made here")
+        sys.exit(77)
+    command("ip", "netns", "del", "seqloopx")
+
+
 class Network:
     """A switch, and a namespace for each robot."""
 
@@ -213,10 +221,7 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
 
 
 if __name__ == "__main__":
-    if os.geteuid() != 0 or subprocess.run(["ip", "netns", "add", "seqloopx"], capture_output=True).returncode != 0:
-        print("network namespaces cannot be made here")
-        sys.exit(77)
-    command("ip", "netns", "del", "seqloopx")
+    ask_for_namespaces()
     with tempfile.TemporaryDirectory() as folder:
         main(sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 1000,
              pathlib.Path(folder))

@@ -4,10 +4,8 @@
 
 Usage: fleet_partition.py SEQLOOP SECONDS (of the partition). Needs root and `ip netns`; exit code 77 without.
 """
-import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 import time
@@ -16,7 +14,7 @@ import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from dds.fleet import expect, way  # noqa: E402
-from dds.fleet_net import RATE, Network, Robot, command  # noqa: E402
+from dds.fleet_net import RATE, Network, Robot, ask_for_namespaces  # noqa: E402
 
 BEFORE, AFTER = 2.5, 4.0  # seconds
 LEASE, REDISCOVERY = 10.0, 15.0  # who is not heard for so long has gone, until it announces itself again
@@ -66,9 +64,6 @@ def main(seqloop: str, apart: float, work: pathlib.Path) -> None:
 
 
 if __name__ == "__main__":
-    if os.geteuid() != 0 or subprocess.run(["ip", "netns", "add", "seqloopx"], capture_output=True).returncode != 0:
-        print("network namespaces cannot be made here")
-        sys.exit(77)
-    command("ip", "netns", "del", "seqloopx")
+    ask_for_namespaces()
     with tempfile.TemporaryDirectory() as folder:
         main(sys.argv[1], float(sys.argv[2]), pathlib.Path(folder))

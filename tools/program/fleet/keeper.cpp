@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "program/fleet/place_number.hpp"
 #include "program/process/say.hpp"
 
 namespace seqloop::program {
@@ -18,10 +19,6 @@ using Json = nlohmann::json;
 
 constexpr auto round_time = 20ms;
 constexpr auto patience = 1s;
-
-// A place's number is its session's in the file, times this, and its frame: sessions grow side by
-// side, and nobody has to remember which place is which.
-constexpr std::uint64_t frames_of_a_session = std::uint64_t{1} << 32U;
 
 // Places that wait to be saved; more wait in DDS.
 constexpr std::size_t most_waiting = 16'384;
@@ -36,7 +33,7 @@ constexpr std::uint64_t said_every = 64;
 constexpr double likely = 0.9;
 
 std::uint64_t number_of(std::int64_t session, std::uint64_t frame) {
-  return static_cast<std::uint64_t>(session) * frames_of_a_session + frame;
+  return place_number(static_cast<std::uint64_t>(session), frame);
 }
 
 }  // namespace
@@ -278,10 +275,10 @@ bool Keeper::publish(const dds::FleetPlace& place, const dds::FleetSession* abou
 /// What a place of the file is to others.
 std::optional<dds::FleetVisit> Keeper::told_as(std::uint64_t number) const {
   if (const auto found = earlier_.find(number); found != earlier_.end()) return found->second;
-  const auto id = static_cast<std::int64_t>(number / frames_of_a_session);
+  const auto id = static_cast<std::int64_t>(session_of(number));
   const auto session = std::ranges::find(sessions_, id, &Session::id);
   if (session == sessions_.end() || !session->grows) return std::nullopt;
-  return dds::FleetVisit{session->names.began_ns, number % frames_of_a_session};
+  return dds::FleetVisit{session->names.began_ns, frame_of(number)};
 }
 
 std::string Keeper::end() {

@@ -34,11 +34,11 @@ OthersMap::OthersMap(const MatcherConfig& config, std::size_t places, std::size_
       told_(sessions) {}
 
 bool OthersMap::take_in(const Place& place, std::span<const std::byte> bytes) noexcept {
-  if (place.frame >= frames) return false;
+  if (place.frame >= frames_of_a_session) return false;
   std::uint32_t& session = begun_[place.session];
   const bool is_new = session == none;
   if (is_new) {
-    map_.count_from(used_ * frames);
+    map_.count_from(place_number(used_, 0));
     if (!map_.begin_session()) return false;
     session = used_;
   }
@@ -67,7 +67,7 @@ FrameReport OthersMap::step(std::span<const float> descriptor, std::uint64_t los
 }
 
 OthersMap::Place OthersMap::where(std::uint64_t number) const noexcept {
-  return {heard_of_[static_cast<std::size_t>(number / frames)], number % frames};
+  return {heard_of_[static_cast<std::size_t>(session_of(number))], frame_of(number)};
 }
 
 }  // namespace seqloop::program

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "program/fleet/place_number.hpp"
 #include "program/fleet/same_places.hpp"
 #include "seqloop/detector.hpp"
 
@@ -52,11 +53,9 @@ class OthersMap {
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
-  // Frames that a session may have. A place's number is its session's, times this, and its frame.
-  static constexpr std::uint64_t frames = std::uint64_t{1} << 32U;
 
   [[nodiscard]] std::uint64_t number(const Place& place) const noexcept {
-    return begun_[place.session] * frames + place.frame;
+    return place_number(begun_[place.session], place.frame);
   }
 
   PlaceMap map_;

@@ -17,7 +17,7 @@ class Progress {
   /// Draws nothing; `tell` still tells.
   Progress() = default;
 
-  /// So many frames more are done.
+  /// @param frames that are done since the last call
   void step(std::uint64_t frames = 1);
 
   /// Prints a line of its own, as `seqloop: MESSAGE`, terminal or not.
