@@ -12,11 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "opencv/detail/avi_header.hpp"
 #include "opencv/detail/avi_pictures.hpp"
+#include "opencv/detail/little_endian.hpp"
 #include "opencv/detail/picture_file.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
-#include "opencv/detail/video_file.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/file_codecs.hpp"
 
@@ -56,14 +57,20 @@ class VideoSource::Impl {
       throw SetupError(Fault{name, "does not exist", "check the name"});
     if (!std::filesystem::is_regular_file(status)) throw SetupError(Fault{name, "is not a file"});
     try {
-      if (std::none_of(backends.begin(), backends.end(),
-                       [&](cv::VideoCaptureAPIs backend) { return capture_->open(name, backend); }))
-        throw SetupError(
-            Fault{name, "is not a video that OpenCV can read",
-                  "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
       const std::vector<std::uint8_t> head = head_of(file);
-      read_properties(tells_frame_rate(head));
-      pending_ = begin_jpeg(file, head) || read();  // some files open well and hold no frame
+      avi_ = read_avi_header(head);
+      pending_ = begin_jpeg(file);
+      if (!pending_) {
+        capture_ = file_codecs().video();
+        if (std::none_of(backends.begin(), backends.end(), [&](cv::VideoCaptureAPIs backend) {
+              return capture_->open(name, backend);
+            }))
+          throw SetupError(
+              Fault{name, "is not a video that OpenCV can read",
+                    "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
+        read_properties(head);
+        pending_ = read();  // some files open well and hold no frame
+      }
     } catch (const cv::Exception& failure) {
       throw SetupError(Fault{name, "is not a video that OpenCV can read (" + failure.err + ")"});
     }
@@ -104,21 +111,30 @@ class VideoSource::Impl {
   }
 
  private:
-  void read_properties(bool tells_rate) {
-    const double rate = capture_->get(cv::CAP_PROP_FPS);
-    rate_told_ = tells_rate && std::isfinite(rate) && rate > 0.0;
-    if (rate_told_) rate_ = rate;
+  /// OpenCV does not tell whether a file says its rate: its backends put 25 there where an AVI file
+  /// has zeros, and where JPEG pictures follow each other without any container. Other formats are
+  /// taken at their word.
+  void read_properties(Bytes head) {
+    const bool told = avi_ ? avi_->rate > 0.0 : !has(head, 0, "\xff\xd8\xff");
+    set_rate(told ? capture_->get(cv::CAP_PROP_FPS) : 0.0);
     const double count = capture_->get(cv::CAP_PROP_FRAME_COUNT);
     if (count >= 1.0 && count < largest_count) declared_ = static_cast<std::uint64_t>(count);
   }
 
-  /// Leaves decoding to mjpg_ where it can. @return whether the first picture is there
-  [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file,
-                                std::span<const std::uint8_t> head) {
-    if (!mjpg_) return false;
-    pictures_ = AviPictures::open(file, head);
-    if (pictures_ && read() && usable_) {
-      capture_->release();
+  /// @param rate frames a second, as told by the file
+  void set_rate(double rate) {
+    rate_told_ = std::isfinite(rate) && rate > 0.0;
+    if (rate_told_) rate_ = rate;
+  }
+
+  /// Leaves reading to AviPictures and decoding to mjpg_ where they can. @return whether the first
+  /// picture is there
+  [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file) {
+    if (!mjpg_ || !avi_ || !avi_->motion_jpeg) return false;
+    pictures_.emplace(file, *avi_);
+    if (read() && usable_) {
+      set_rate(avi_->rate);
+      if (avi_->frames > 0) declared_ = avi_->frames;
       first_number_ = pictures_->number();
       time_s_ = 0.0;
       return true;
@@ -134,11 +150,9 @@ class VideoSource::Impl {
   [[nodiscard]] bool read_jpeg() {
     if (!pictures_->next(jpeg_)) return false;
     time_s_ = static_cast<double>(pictures_->number() - first_number_) / rate_;
-    damage_ = mjpg_->decode({.bytes = jpeg_,
-                             .width = pictures_->width(),
-                             .height = pictures_->height(),
-                             .format = RawFormat::mjpg},
-                            image_);
+    damage_ = mjpg_->decode(
+        {.bytes = jpeg_, .width = avi_->width, .height = avi_->height, .format = RawFormat::mjpg},
+        image_);
     usable_ = damage_.empty() || make_up();
     return true;
   }
@@ -148,8 +162,8 @@ class VideoSource::Impl {
   [[nodiscard]] bool make_up() {
     const PictureFile seen = look_at(jpeg_);
     if (!seen.jpeg || !seen.fault.empty() ||
-        seen.width != static_cast<std::uint64_t>(pictures_->width()) ||
-        seen.height != static_cast<std::uint64_t>(pictures_->height()))
+        seen.width != static_cast<std::uint64_t>(avi_->width) ||
+        seen.height != static_cast<std::uint64_t>(avi_->height))
       return false;
     picture_ = file_codecs().decode(jpeg_, cv::IMREAD_COLOR);
     if (!picture_.empty()) image_ = view(picture_);
@@ -179,13 +193,14 @@ class VideoSource::Impl {
   }
 
   std::unique_ptr<PictureDecoder> mjpg_;
-  std::optional<AviPictures> pictures_;  ///< where OpenCV does not decode
+  std::optional<AviHeader> avi_;         ///< of an AVI file with a video
+  std::optional<AviPictures> pictures_;  ///< of motion JPEG in one; OpenCV reads all else
   std::vector<std::uint8_t> jpeg_;
   Image image_;              ///< of pictures_, in mjpg_'s memory or picture_'s
   std::string_view damage_;  ///< likewise
   bool usable_ = false;      ///< all the same
   std::uint64_t first_number_ = 0;
-  std::unique_ptr<cv::VideoCapture> capture_ = file_codecs().video();
+  std::unique_ptr<cv::VideoCapture> capture_;  ///< null: pictures_ are read
   cv::Mat picture_;
   cv::Mat gray_picture_;
   bool gray_;

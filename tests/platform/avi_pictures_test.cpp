@@ -30,16 +30,19 @@ std::string list(const std::string& name, const std::string& content) {
   return chunk("LIST", name + content);
 }
 
-std::string stream(const std::string& kind, const std::string& codec) {
+/// @param time scale, rate, start and length
+std::string stream(const std::string& kind, const std::string& codec,
+                   const std::string& time = std::string(16, '\0')) {
   const std::string format = number(40) + number(64) + number(48) + number(0) + codec;
-  return list("strl", chunk("strh", kind + codec + std::string(48, '\0')) +
-                          chunk("strf", format + std::string(20, '\0')));
+  const std::string header = kind + codec + std::string(12, '\0') + time + std::string(20, '\0');
+  return list("strl", chunk("strh", header) + chunk("strf", format + std::string(20, '\0')));
 }
 
 /// @param movi what stands where the pictures are
-std::string avi(const std::string& streams, const std::string& movi) {
-  return chunk("RIFF", "AVI " + list("hdrl", chunk("avih", std::string(56, '\0')) + streams) +
-                           chunk("JUNK", "odd") + list("movi", movi));
+std::string avi(const std::string& streams, const std::string& movi, std::uint32_t frame_us = 0) {
+  const std::string main = number(frame_us) + std::string(52, '\0');
+  return chunk("RIFF", "AVI " + list("hdrl", chunk("avih", main) + streams) + chunk("JUNK", "odd") +
+                           list("movi", movi));
 }
 
 /// What is read: number and bytes of each picture; nothing where the file is not taken.
@@ -47,19 +50,45 @@ using Read = std::vector<std::pair<std::uint64_t, std::string>>;
 std::optional<Read> read(const std::string& file) {
   const test::TemporaryFolder folder;
   const std::vector<std::uint8_t> head(file.begin(), file.end());
-  auto pictures = AviPictures::open(folder.write("drive.avi", file), head);
-  if (!pictures) return std::nullopt;
-  EXPECT_EQ(std::pair(pictures->width(), pictures->height()), std::pair(64, 48));
+  const auto header = read_avi_header(head);
+  if (!header || !header->motion_jpeg) return std::nullopt;
+  EXPECT_EQ(std::pair(header->width, header->height), std::pair(64, 48));
+  AviPictures pictures(folder.write("drive.avi", file), *header);
   Read read;
   std::vector<std::uint8_t> jpeg;
-  while (pictures->next(jpeg))
-    read.emplace_back(pictures->number(), std::string(jpeg.begin(), jpeg.end()));
-  EXPECT_FALSE(pictures->next(jpeg));
+  while (pictures.next(jpeg))
+    read.emplace_back(pictures.number(), std::string(jpeg.begin(), jpeg.end()));
+  EXPECT_FALSE(pictures.next(jpeg));
   return read;
 }
 
 const std::string video = stream("vids", "MJPG");
 const std::string sound = stream("auds", "\1\0\0\0");
+
+std::optional<AviHeader> header_of(const std::string& file) {
+  return read_avi_header(std::vector<std::uint8_t>(file.begin(), file.end()));
+}
+
+TEST(AviHeader, TellsTheRateAndTheLengthOfTheFirstVideo) {
+  const std::string time = number(1001) + number(30'000) + number(7) + number(12);
+  const std::string other = stream("vids", "MJPG", number(1) + number(5) + number(0) + number(99));
+  for (const char* codec : {"MJPG", "H264"}) {
+    const auto header = header_of(avi(sound + stream("vids", codec, time) + other, "", 50'000));
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->stream, 1);
+    EXPECT_EQ(header->motion_jpeg, codec == std::string("MJPG"));
+    EXPECT_EQ(header->rate, 30'000.0 / 1001.0);
+    EXPECT_EQ(header->frames, 12U);
+  }
+}
+
+TEST(AviHeader, HasTheRateOfTheMainHeaderWhereTheVideosOwnIsNone) {
+  for (const std::string& time : {number(1) + number(0), number(0) + number(25)}) {
+    const std::string untold = stream("vids", "MJPG", time + std::string(8, '\0'));
+    EXPECT_EQ(header_of(avi(untold, "", 50'000)).value_or(AviHeader{}).rate, 20.0);
+    EXPECT_EQ(header_of(avi(untold, "")).value_or(AviHeader{.rate = 1.0}).rate, 0.0);
+  }
+}
 
 TEST(AviPictures, AreReadInTheirOrderWithTheirNumbers) {
   const std::string movi = chunk("00dc", "first") + chunk("01wb", "sound!") + chunk("00db", "2nd") +
@@ -112,12 +141,13 @@ TEST(AviPictures, EndWhateverIsDamaged) {
   for (int i = 0; i < 400; ++i) {
     const std::string file = test::mutated(whole, random);
     const std::vector<std::uint8_t> head(file.begin(), file.end());
-    auto pictures = AviPictures::open(folder.write("drive.avi", file), head);
-    if (!pictures) continue;
+    const auto header = read_avi_header(head);
+    if (!header || !header->motion_jpeg) continue;
+    AviPictures pictures(folder.write("drive.avi", file), *header);
     ++taken;
     std::vector<std::uint8_t> jpeg;
     std::size_t count = 0;
-    while (pictures->next(jpeg)) {
+    while (pictures.next(jpeg)) {
       ASSERT_LE(jpeg.size(), file.size());
       ASSERT_LE(++count, file.size() / 8);
     }

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <span>
 #include <vector>
+
+#include "opencv/detail/avi_header.hpp"
 
 namespace seqloop::opencv {
 
@@ -18,10 +18,9 @@ namespace seqloop::opencv {
 /// cut off is read as far as it goes. After a damaged chunk header there may be no further picture.
 class AviPictures {
  public:
-  /// @param head the file's first bytes, as far as its headers reach
-  /// @return nothing where the file is no AVI file, or its first video no motion JPEG
-  [[nodiscard]] static std::optional<AviPictures> open(const std::filesystem::path& file,
-                                                       std::span<const std::uint8_t> head);
+  /// @param header of that file, whose first video is motion JPEG. A file that cannot be opened has
+  /// no pictures.
+  AviPictures(const std::filesystem::path& file, const AviHeader& header);
 
   /// Reads the next picture. @param jpeg its bytes, and as long as it is; left as it is at the end
   /// @return false at the end. May throw std::bad_alloc. Allocates: when a picture is larger than
@@ -32,19 +31,12 @@ class AviPictures {
   /// are counted, so that its time is this number of frame times.
   [[nodiscard]] std::uint64_t number() const noexcept { return begun_ - 1; }
 
-  [[nodiscard]] int width() const noexcept { return width_; }    ///< pixels, as declared
-  [[nodiscard]] int height() const noexcept { return height_; }  ///< likewise
-
  private:
-  AviPictures() = default;
-
-  std::ifstream stream_;
+  std::ifstream bytes_;
   std::uint64_t size_ = 0;   ///< of the file, bytes
   std::uint64_t place_ = 0;  ///< of the next chunk
   std::uint64_t begun_ = 0;  ///< pictures and empty chunks passed
-  int stream_number_ = 0;    ///< of the video among the file's streams
-  int width_ = 0;
-  int height_ = 0;
+  int stream_;               ///< of the video among the file's streams
 };
 
 }  // namespace seqloop::opencv
