@@ -42,7 +42,19 @@ Qos partition_qos(const std::string& name) {
   return qos;
 }
 
+// What is written is only read; C has no way to say so of a member.
 char* text(const std::string& words) { return const_cast<char*>(words.c_str()); }
+
+dds_sequence_double numbers(std::span<const double> values) {
+  dds_sequence_double sequence{};
+  sequence._length = sequence._maximum = static_cast<std::uint32_t>(values.size());
+  sequence._buffer = const_cast<double*>(values.data());
+  return sequence;
+}
+
+std::span<const double> numbers(const dds_sequence_double& sequence) {
+  return {sequence._buffer, std::size_t{sequence._length}};
+}
 
 std::string words(const char* text) { return text == nullptr ? std::string() : text; }
 
@@ -91,6 +103,13 @@ class Fleet::Impl {
       sample.visit._length = sample.visit._maximum = 1;
       sample.visit._buffer = &visit;
     }
+    seqloop_fleet_Statistics statistics{};
+    if (place.statistics) {
+      statistics = {place.statistics->frames, numbers(place.statistics->mean),
+                    numbers(place.statistics->variance)};
+      sample.statistics._length = sample.statistics._maximum = 1;
+      sample.statistics._buffer = &statistics;
+    }
     const auto size = static_cast<std::uint32_t>(place.bytes.size());
     sample.bytes._length = sample.bytes._maximum = size;
     sample.bytes._buffer = const_cast<std::uint8_t*>(
@@ -124,9 +143,14 @@ class Fleet::Impl {
           place.frame,
           place.time_ns,
           std::as_bytes(std::span(place.bytes._buffer, std::size_t{place.bytes._length})),
+          {},
           {}};
       if (place.visit._length == 1) {
         heard.visit = {place.visit._buffer[0].session, place.visit._buffer[0].frame};
+      }
+      if (place.statistics._length == 1) {
+        const seqloop_fleet_Statistics& its = place.statistics._buffer[0];
+        heard.statistics = {its.frames, numbers(its.mean), numbers(its.variance)};
       }
       if (place.about._length == 0) {
         hear(heard, nullptr);

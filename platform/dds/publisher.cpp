@@ -86,12 +86,14 @@ Publisher::~Publisher() = default;
 bool Publisher::publish(const ros::LoopClosure& closure) {
   const std::string nothing;
   const std::string session(closure.session);
+  const std::string robot(closure.robot);
   seqloop_msgs_msg_dds__LoopClosure_ message{};
   message.header = header(closure.stamp_ns, nothing);
   message.match_stamp = time_of(closure.match_stamp_ns);
   message.frame = closure.frame;
   message.match = closure.match;
   message.session = text(session);
+  message.robot = text(robot);
   message.probability = closure.probability;
   message.uniqueness = closure.uniqueness;
   message.score = closure.score;

@@ -26,7 +26,7 @@ const std::array all_types{
               "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
               &diagnostic_msgs_msg_dds__DiagnosticArray__desc},
     TopicType{"seqloop_msgs/msg/LoopClosure",
-              "RIHS01_61a441362697e47cddf6d1a7b2c6d143fbd1b0e0102685887e46ec1c05d4b951",
+              "RIHS01_e49cbbc048ec3f8519ca655ac747936765647a74617218a8bf1e9d438d886273",
               &seqloop_msgs_msg_dds__LoopClosure__desc},
     TopicType{"seqloop_msgs/msg/Status",
               "RIHS01_5d6c7c581c4ad2ee0f19d3b7c490e1b9d07fbdd02be1ae5b5b83b137f0e9fa3b",

@@ -53,6 +53,7 @@ std::vector<std::uint8_t> message_of(const LoopClosure& closure) {
   cdr.number(closure.frame);
   cdr.number(closure.match);
   cdr.text(closure.session);
+  cdr.text(closure.robot);
   cdr.number(closure.probability);
   cdr.number(closure.uniqueness);
   cdr.number(closure.score);

@@ -43,7 +43,7 @@ def read_closure(message: bytes) -> dict:
     """A LoopClosure, value by value."""
     assert message[:4] == b"\0\1\0\0", message[:4]
     body, at, values = message[4:], 0, []
-    for kind in ("i", "I", "s", "i", "I", "Q", "Q", "s", "d", "d", "d", "d", "I"):
+    for kind in ("i", "I", "s", "i", "I", "Q", "Q", "s", "s", "d", "d", "d", "d", "I"):
         size = 4 if kind == "s" else struct.calcsize(kind)
         at += -at % size
         value = struct.unpack_from("<I" if kind == "s" else "<" + kind, body, at)[0]
@@ -54,7 +54,7 @@ def read_closure(message: bytes) -> dict:
         values.append(value)
     assert len(body) - at < 4, (len(body), at)
     return {"stamp": values[0] * SECOND + values[1], "match_stamp": values[3] * SECOND + values[4],
-            "frame": values[5], "match": values[6], "session": values[7], "probability": values[8]}
+            "frame": values[5], "match": values[6], "session": values[7], "robot": values[8], "probability": values[9]}
 
 
 def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:

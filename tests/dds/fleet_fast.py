@@ -5,6 +5,7 @@
 Usage: fleet_fast.py SEQLOOP FAST_END
 """
 import pathlib
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -37,20 +38,31 @@ class Reader:
 
 
 def place(message: bytes) -> tuple:
-    """@return session, frame, time, names and form or nothing, bytes, visit or nothing, as platform/dds/idl/fleet.idl"""
+    """@return session, frame, time, names and form or nothing, bytes, visit or nothing, frames and doubles of
+    statistics or nothing, as platform/dds/idl/fleet.idl"""
     cdr = Reader(message)
     session, frame, time_ns = cdr.number("q"), cdr.number("Q"), cdr.number("q")
-    about, visit = None, None
+    about, visit, statistics = None, None, None
     if cdr.number("I") == 1:
         about = [cdr.octets().rstrip(b"\0").decode() for _ in range(4)] + [cdr.number("I"), cdr.number("I")]
     content = cdr.octets()
     if cdr.number("I") == 1:
         visit = (cdr.number("q"), cdr.number("Q"))
-    return session, frame, time_ns, about, content, visit
+    if cdr.number("I") == 1:
+        statistics = (cdr.number("Q"), *([cdr.number("d") for _ in range(cdr.number("I"))] for _ in range(2)))
+    return session, frame, time_ns, about, content, visit, statistics
+
+
+def statistics_of(path: pathlib.Path) -> tuple:
+    """@return frames, means, variances of the newest session"""
+    frames, *values = sqlite3.connect(f"file:{path}?mode=ro", uri=True).execute(
+        "SELECT frames, mean, variance FROM statistics ORDER BY session DESC").fetchone()
+    return (frames, *([number for number, in struct.iter_unpack("<d", value)] for value in values))
 
 
 def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
-    robot = Robot(seqloop, work, "anna", drive(work, "anna", way(700), 1), "anna.seqloop")
+    robot = Robot(seqloop, work, "anna", drive(work, "anna", way(700), 1), "anna.seqloop",
+                  standardise="on")
     time.sleep(1.5)  # it has told some before anybody listens
     listener = subprocess.Popen([fast_end, "listen", "seqloop_fleet/places", "seqloop_fleet::Place", "reliable", "test"],
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ros.environment())
@@ -63,12 +75,14 @@ def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
         data = data[8 + size:]
     saved = places(work / "anna.seqloop")
     told = {(session, frame): struct.pack("<q", time_ns) + content
-            for session, frame, time_ns, _, content, visit in heard if visit is None}
+            for session, frame, time_ns, _, content, visit, statistics in heard if visit is None and statistics is None}
     expect(told == saved, f"Fast DDS hears every place that is saved, to the byte: {len(told)} of {len(saved)}")
     first = heard[0]
     expect(first[1] == 0 and first[3] is not None and first[3][0] == "anna" and first[3][2].startswith("int8")
            and first[3][4] == 64, f"the first says whose it is and what it is like: {first[3]}")
-    expect(all(about is None or about == first[3] for _, _, _, about, _, _ in heard), "and all that say so say the same")
+    expect(all(about is None or about == first[3] for _, _, _, about, *_ in heard), "and all that say so say the same")
+    newest = [message[6] for message in heard if message[6] is not None][-1]
+    expect(newest == statistics_of(work / "anna.seqloop"), f"and by what it is standardised, of {newest[0]} frames")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 Usage: fleet_keeper.py SEQLOOP TIMES
 """
+import json
 import pathlib
 import random
 import signal
@@ -53,6 +54,30 @@ def places(path: pathlib.Path) -> dict[tuple[int, int], bytes]:
                 sys.exit(f"{path} has frame {frame} of {began} twice")
             found[began, frame] = struct.pack("<q", time_ns) + content[size * i:size * (i + 1)]
     return found
+
+
+def localises(seqloop: str, work: pathlib.Path) -> None:
+    """What two robots tell a keeper is a map for a third that never was in their fleet; places are standardised."""
+    work.mkdir()
+    seen = way(600)
+    keeper = Keeper(seqloop, work)
+    robots = [Robot(seqloop, work, name, drive(work, name, seen[first:first + 400], seed), f"{name}.seqloop",
+                    standardise="on") for name, first, seed in (("anna", 0, 1), ("bert", 200, 2))]
+    for robot in robots:
+        robot.end()
+    time.sleep(1.0)
+    keeper.end()
+    late = drive(work, "late", seen, 3)
+    for flags in (("--out", work / "read.jsonl", "--read-only"), ("--out", work / "added.jsonl")):
+        subprocess.run([seqloop, "run", "--source", late, "--map", work / "kept.seqloop", *flags], check=True,
+                       capture_output=True)
+        lines = [json.loads(line) for line in flags[1].read_text().splitlines()]
+        found = [answer for line in lines for answer in line["answers"] if answer["status"] == "match"]
+        off = [abs(answer["frame"] - answer["session_frame"] - (200 if answer["session"].startswith("bert") else 0))
+               for answer in found]
+        expect(len(found) > 400 and max(off) <= 3, f"a drive is localised in a keeper's map: {len(found)}")
+    subprocess.run([seqloop, "match", "--query", late, "--map", work / "kept.seqloop", "--read-only", "--out",
+                    work / "m.csv"], check=True, capture_output=True)
 
 
 def main(seqloop: str, times: int, work: pathlib.Path) -> None:
@@ -108,4 +133,5 @@ def main(seqloop: str, times: int, work: pathlib.Path) -> None:
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
+        localises(sys.argv[1], pathlib.Path(folder) / "whole")
         main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/oracle.hpp"
+#include "program/fleet/through_own.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -29,12 +30,13 @@ class Robot {
         own_(config(), {drive.size(), size, 2}),
         detector_(config(), own_),
         others_(config(), robots * drive.size(), robots, own_),
+        through_own_(config(), own_),
         heard_(robots),
         heard_links_(robots) {}
 
   void step(const std::vector<std::unique_ptr<Robot>>& all) {
     const std::uint64_t now = places_.size();
-    static_cast<void>(detector_.step((*drive_)[now]));
+    const std::span<const Answer> mine = detector_.step((*drive_)[now]).answers;
     places_.emplace_back(own_.rows().saved_size());
     own_.rows().save(own_.order().slot(now), places_.back());
     if (now >= settled_after) {
@@ -45,10 +47,12 @@ class Robot {
     for (const auto& other : all) {
       if (other->index_ != index_) hear(*other, now);
     }
-    note(others_.step((*drive_)[now], 0).answers, now);
+    const std::span<const Answer> theirs = others_.step((*drive_)[now], 0).answers;
+    link(theirs, now);
+    note(through_own_.take(mine, theirs));
   }
 
-  void finish() { note(others_.finish(), places_.size()); }
+  void finish() { note(through_own_.finish(detector_.finish(), others_.finish())); }
 
   [[nodiscard]] const std::set<std::uint64_t>& found() const { return found_; }
   [[nodiscard]] std::size_t wrong() const { return wrong_; }
@@ -111,12 +115,17 @@ class Robot {
     }
   }
 
-  void note(std::span<const Answer> answers, std::uint64_t now) {
+  void link(std::span<const Answer> answers, std::uint64_t now) {
     for (const Answer& answer : answers) {
-      if (!answer.match) continue;
+      if (!answer.match || !(answer.probability >= 0.9F)) continue;
+      links_.push_back({now, answer.frame, others_.where(answer.match->place)});
+    }
+  }
+
+  void note(std::span<const Answer> answers) {
+    for (const Answer& answer : answers) {
+      if (answer.gate != Gate::match || !answer.match) continue;
       const OthersMap::Place place = others_.where(answer.match->place);
-      if (answer.probability >= 0.9F) links_.push_back({now, answer.frame, place});
-      if (answer.gate != Gate::match) continue;
       found_.insert(answer.frame);
       // All have set off at other places of the road, a seventh of it apart.
       const std::size_t here = answer.frame + index_ * (lap / 7);
@@ -131,6 +140,7 @@ class Robot {
   PlaceMap own_;
   Detector detector_;
   OthersMap others_;
+  ThroughOwn through_own_;
   std::vector<std::uint64_t> heard_;
   std::vector<std::size_t> heard_links_;
   std::vector<std::vector<std::byte>> places_;

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program/fleet/place_queue.hpp"
@@ -29,7 +31,15 @@ class OthersTest : public ::testing::Test {
   std::optional<std::uint32_t> hear_at(std::int64_t session, std::uint64_t frame,
                                        std::int64_t time_ns,
                                        const dds::FleetSession* what = nullptr) {
-    return others_.hear({session, frame, time_ns, bytes_, {}}, what);
+    return others_.hear({session, frame, time_ns, bytes_, {}, {}}, what);
+  }
+  std::optional<std::uint32_t> hear_statistics(std::int64_t session,
+                                               const std::vector<double>& mean,
+                                               const std::vector<double>& variance,
+                                               std::uint64_t frames = 9) {
+    dds::FleetPlace place{.session = session};
+    place.statistics = {frames, mean, variance};
+    return others_.statistics(place);
   }
 
   const dds::FleetSession about_ = about();
@@ -60,6 +70,32 @@ TEST_F(OthersTest, NothingIsCountedTwice) {
   EXPECT_FALSE(hear(5, 0, &about_));
   EXPECT_EQ(others_.places(), 11U);
   EXPECT_TRUE(others_.news().empty());
+}
+
+TEST_F(OthersTest, StatisticsAreThoseOfASessionThatIsHeard) {
+  const std::vector<double> some{1.0, 0.0, -2.0, 3.0};
+  const std::vector<double> squares{1.0, 0.0, 2.0, 3.0};
+  EXPECT_EQ(hear_statistics(1000, some, squares), std::nullopt) << "nothing is known of it";
+  EXPECT_EQ(hear(1000, 0, &about_), 0U);
+  EXPECT_EQ(hear_statistics(1000, some, squares), 0U);
+  EXPECT_TRUE(others_.news().empty());
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<std::vector<double>, std::vector<double>>> nonsense{
+      {{1.0, 2.0, 3.0}, squares},
+      {some, {1.0}},
+      {{nan, 0.0, 0.0, 0.0}, squares},
+      {some, {0.0, nan, 0.0, 0.0}},
+      {some, {0.0, 0.0, 0.0, -1.0}}};
+  std::int64_t session = 2000;
+  for (const auto& [mean, variance] : nonsense) {
+    EXPECT_TRUE(hear(++session, 0, &about_));
+    EXPECT_EQ(hear_statistics(session, mean, variance), std::nullopt);
+    EXPECT_EQ(others_.news().size(), 1U);
+    EXPECT_FALSE(hear(session, 1, &about_)) << "no more of it is taken in";
+    EXPECT_EQ(hear_statistics(session, some, squares), std::nullopt);
+  }
+  EXPECT_TRUE(hear(3000, 0, &about_));
+  EXPECT_EQ(hear_statistics(3000, some, squares, 0), std::nullopt) << "of no frames";
 }
 
 TEST_F(OthersTest, WhatCannotBeComparedIsRefusedByNameAndOnce) {

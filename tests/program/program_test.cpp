@@ -604,7 +604,15 @@ TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   EXPECT_EQ(rounds("--max-places 20000000"), 50U);
   EXPECT_EQ(rounds("--max-places 1000000 --relocalise-s 2"), 50U);
   EXPECT_EQ(rounds("--max-places 1000000 --slice 4096"), 245U);
-  for (const auto& printed : {paper, plan}) {
+  const auto fleet =
+      expect_done("plan --max-places 10000 --descriptor-size 64 --ds 10 --fleet-places 20000");
+  for (const char* line : {"1280000  others' map: places", "640000  map: places",
+                           "among 20000 places of other robots, in addition"}) {
+    EXPECT_NE(fleet.out.find(line), std::string::npos) << line << " in\n" << fleet.out;
+  }
+  EXPECT_EQ(plan.out.find("others"), std::string::npos) << plan.out;
+  EXPECT_EQ(run("plan --fleet-places 2000000").exit_code, 2);
+  for (const auto& printed : {paper, plan, fleet}) {
     EXPECT_EQ(printed.out.find("\n               0  "), std::string::npos) << "empty buffers";
   }
 }

@@ -224,6 +224,48 @@ TEST(RunView, VerdictsBecomeATruth) {
   EXPECT_EQ(view.loops(2, 1)["loops"][0]["verdict"], "rejected");
 }
 
+TEST(RunView, LoopsWithOtherRobotsAreNamedByRobot) {
+  RunView view(Json::object());
+  const auto snapshot = std::make_unique<Snapshot>();
+  view.take(*snapshot, 0.0);
+  EXPECT_FALSE(view.status().contains("fleet")) << "alone";
+  snapshot->map.of_others = 70;
+  view.take(*snapshot, 0.1);
+  view.take(match_at(10, 1));
+  const auto loop = std::make_unique<OtherLoop>();
+  for (const char* robot : {"anna", "bert", "anna"}) {
+    loop->answer = match_at(20, 5);
+    loop->robot.assign({robot});
+    loop->session.assign({"monday"});
+    view.take(*loop);
+  }
+  const Json status = view.status();
+  EXPECT_EQ(status["fleet"], (Json{{"places", 70}, {"loops", 3}}));
+  EXPECT_EQ(status["loops"]["count"], 4);
+  EXPECT_EQ(status["last_match"]["match"], 1) << "of the own map";
+  const Json loops = view.loops(0, 10)["loops"];
+  ASSERT_EQ(loops.size(), 4U);
+  EXPECT_FALSE(loops[0].contains("robot"));
+  EXPECT_EQ(loops[2]["robot"], "bert");
+  EXPECT_EQ(loops[3]["robot"], "anna");
+  EXPECT_EQ(loops[3]["session"], "monday");
+  EXPECT_EQ(loops[3]["match"], 5);
+  EXPECT_FALSE(view.judge(2, Verdict::accepted)) << "it is in no map here";
+  EXPECT_EQ(view.truth_csv(), "query,reference\n");
+}
+
+TEST(Watch, LoopsWithOtherRobotsAreHandedOver) {
+  WatchedLoop loop;
+  std::vector<OtherLoop> loops(600);
+  for (std::size_t n = 0; n < loops.size(); ++n) {
+    loops[n].answer.frame = n;
+    loops[n].robot.assign({"anna"});
+  }
+  loop.watch->publish(loops);
+  EXPECT_EQ(loop.watch->unseen(), 600U - 512U) << "counted, not waited for";
+  EXPECT_EQ(loop.watch->loops().front()->robot.view(), "anna");
+}
+
 TEST(RunView, TellsTroublesOnceAndTheNewestOfThem) {
   RunView view(Json::object());
   const auto snapshot = std::make_unique<Snapshot>();

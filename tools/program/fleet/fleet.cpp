@@ -11,6 +11,7 @@
 
 #include "program/fleet/fleet_talk.hpp"
 #include "program/fleet/others_map.hpp"
+#include "program/fleet/through_own.hpp"
 #include "program/run/frame_json.hpp"
 #include "program/run/source_numbers.hpp"
 
@@ -20,6 +21,9 @@ namespace {
 // Places that are taken in before a frame, at most.
 constexpr std::size_t most_a_frame = 64;
 
+// Loops that become known at once and are handed on, at most.
+constexpr std::size_t most_loops = 1024;
+
 }  // namespace
 
 class Fleet::Impl {
@@ -27,30 +31,42 @@ class Fleet::Impl {
   Impl(const FleetSettings& settings, std::shared_ptr<dds::Participant> participant,
        LastingMap& map, const MatcherConfig& config, const PlaceMap& own)
       : participant_(std::move(participant)),
-        map_(config, settings.places, Others::most_sessions, own),
+        map_(config, settings.places, most_fleet_sessions, own),
+        through_own_(config, own),
         numbers_(config, nullptr),
-        talk_(settings, *participant_, map) {}
+        talk_(settings, *participant_, map) {
+    loops_.reserve(most_loops);
+  }
 
   void step(ProcessedFrame& processed, Clock& clock) noexcept {
     answers_ = {};
+    loops_.clear();
     if (processed.report.gate == Gate::no_frame) return;
     const Nanoseconds before = clock.now();
     take_in();
     ProcessedFrame mine;
     mine.frame = processed.frame;
     mine.report = map_.step(processed.descriptor, processed.frame.lost + processed.frame.dropped);
+    const std::span<const Answer> both =
+        through_own_.take(processed.report.answers, mine.report.answers);
     numbers_.rename(mine);
-    answers_ = mine.report.answers;
+    link(mine.report.answers);
+    close(numbers_.rename(both));
     const Nanoseconds took = clock.now() - before;
     processed.times.match += took;
     processed.times.total += took;
-    for (const Answer& answer : answers_) note(answer);
   }
 
-  void finish() noexcept {
-    answers_ = numbers_.rename(map_.finish());
-    for (const Answer& answer : answers_) note(answer);
+  void finish(std::span<const Answer> rest) noexcept {
+    loops_.clear();
+    const std::span<const Answer> last = map_.finish();
+    const std::span<const Answer> both = through_own_.finish(rest, last);
+    link(numbers_.rename(last));
+    close(numbers_.rename(both));
   }
+
+  [[nodiscard]] std::span<const OtherLoop> loops() const noexcept { return loops_; }
+  [[nodiscard]] std::size_t places() const noexcept { return map_.size(); }
 
   void add_to(nlohmann::ordered_json& frame) const {
     frame["fleet_places"] = map_.size();
@@ -80,7 +96,7 @@ class Fleet::Impl {
     std::string text = fmt::format(
         "{} places were told; of others {} places of {} sessions are known, and {} "
         "frames closed loops with them",
-        counts.told, counts.heard, counts.sessions, loops_);
+        counts.told, counts.heard, counts.sessions, closed_);
     if (counts.untold > 0) {
       text += fmt::format("; {} were not told, for the network or --fleet-kbps is too slow",
                           counts.untold);
@@ -104,20 +120,41 @@ class Fleet::Impl {
     }
   }
 
-  void note(const Answer& answer) noexcept {
-    if (answer.gate == Gate::match) ++loops_;
+  /// Others are told which frames are places of theirs. What follows from the robot's own loops,
+  /// which they are told as well, follows for them, too.
+  void link(std::span<const Answer> answers) noexcept {
     // As within a map, for later frames of all.
     constexpr float likely = 0.9F;
-    if (!answer.match || !(answer.probability >= likely)) return;
-    const OthersMap::Place place = map_.where(answer.match->place);
-    talk_.found({answer.frame, place.session, place.frame});
+    for (const Answer& answer : answers) {
+      if (!answer.match || !(answer.probability >= likely)) continue;
+      const OthersMap::Place place = map_.where(answer.match->place);
+      talk_.found({answer.frame, place.session, place.frame});
+    }
+  }
+
+  void close(std::span<const Answer> answers) noexcept {
+    answers_ = answers;
+    for (const Answer& answer : answers) {
+      if (answer.gate != Gate::match || !answer.match) continue;
+      ++closed_;
+      if (loops_.size() == loops_.capacity()) continue;
+      const OthersMap::Place place = map_.where(answer.match->place);
+      const Others::Names& names = talk_.names(place.session);
+      OtherLoop& loop = loops_.emplace_back();
+      loop.answer = answer;
+      loop.answer.match->place = loop.answer.match->head = static_cast<std::size_t>(place.frame);
+      loop.robot.assign({names.robot});
+      loop.session.assign({names.session});
+    }
   }
 
   std::shared_ptr<dds::Participant> participant_;
   OthersMap map_;
+  ThroughOwn through_own_;
   SourceNumbers numbers_;
   std::span<const Answer> answers_;
-  std::uint64_t loops_ = 0;
+  std::vector<OtherLoop> loops_;
+  std::uint64_t closed_ = 0;
   std::uint64_t refused_ = 0;
   FleetTalk talk_;
 };
@@ -132,7 +169,11 @@ void Fleet::step(ProcessedFrame& processed, Clock& clock) noexcept {
   impl_->step(processed, clock);
 }
 
-void Fleet::finish() noexcept { impl_->finish(); }
+void Fleet::finish(std::span<const Answer> rest) noexcept { impl_->finish(rest); }
+
+std::span<const OtherLoop> Fleet::loops() const noexcept { return impl_->loops(); }
+
+std::size_t Fleet::places() const noexcept { return impl_->places(); }
 
 void Fleet::add_to(nlohmann::ordered_json& frame) const { impl_->add_to(frame); }
 

@@ -9,6 +9,7 @@
 
 #include "program/fleet/fleet_settings.hpp"
 #include "program/map/lasting_map.hpp"
+#include "program/run/other_loop.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/pipeline.hpp"
 
@@ -43,7 +44,14 @@ class Fleet {
   void step(ProcessedFrame& processed, Clock& clock) noexcept;
 
   /// The drive is over. The answers that still wait are the next that `add_to` adds.
-  void finish() noexcept;
+  /// @param rest the last answers of the run's detector, as it counts
+  void finish(std::span<const Answer> rest) noexcept;
+
+  /// Loops of the newest step, or of `finish`.
+  [[nodiscard]] std::span<const OtherLoop> loops() const noexcept;
+
+  /// Places of others that are known.
+  [[nodiscard]] std::size_t places() const noexcept;
 
   /// Adds the answers of the newest step: `fleet`, an array; and `fleet_places`, how many places of
   /// others are known.

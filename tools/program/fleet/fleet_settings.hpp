@@ -16,6 +16,9 @@ struct FleetSettings {
   double kbps = 0.0;            ///< kilobits that this one tells a second; 0: all
 };
 
+/// Sessions of others that are known at a time, those that are not heard included.
+inline constexpr std::size_t most_fleet_sessions = 1024;
+
 /// Places that there may be room for.
 inline constexpr std::size_t most_fleet_places = std::size_t{1} << 20U;
 

@@ -67,6 +67,14 @@ void FleetTalk::end() {
 /// The saving thread's side.
 void FleetTalk::Saved::keep(const SavedPlace& place) {
   const std::scoped_lock lock(mutex);
+  if (place.statistics) {
+    const SessionStatistics& its = *place.statistics;
+    statistics = {place.began_ns,
+                  its.frames,
+                  {its.mean.begin(), its.mean.end()},
+                  {its.variance.begin(), its.variance.end()}};
+    return;
+  }
   if (waiting.size() == room) {
     waiting.pop_front();
     ++untold;
@@ -87,6 +95,7 @@ void FleetTalk::work() {
   }
   while (!ending_) {
     tell_newest();
+    tell_statistics(statistics_after_);
     tell_found();
     hear();
     wire_.wait(round_time);
@@ -100,6 +109,7 @@ void FleetTalk::work() {
     }
     wire_.wait(round_time);
   }
+  tell_statistics(1);
   const auto left = until - std::chrono::steady_clock::now();
   if (left > 0s && wire_.others() > 0) wire_.flush(left);
 }
@@ -144,24 +154,44 @@ void FleetTalk::tell_found() {
   while (const Found* const found = found_.front()) {
     if (!newest_told_ || found->frame > newest_told_->frame) return;
     const dds::FleetVisit visited{others_.names(found->session).began_ns, found->session_frame};
-    if (!publish({newest_told_->session, found->frame, 0, {}, visited}, nullptr)) return;
+    if (!publish({newest_told_->session, found->frame, 0, {}, visited, {}}, nullptr)) return;
     found_.pop();
   }
 }
 
+/// By what the running session is standardised, once that many of its places are told.
+void FleetTalk::tell_statistics(std::uint64_t places) {
+  if (!newest_told_ || newest_told_->session != session_ || of_session_ < places) return;
+  Statistics newest;
+  {
+    const std::scoped_lock lock(saved_->mutex);
+    newest = saved_->statistics;
+  }
+  if (newest.frames == 0 || newest.began_ns != session_) return;
+  dds::FleetPlace none{.session = session_, .frame = newest_told_->frame};
+  none.statistics = {newest.frames, newest.mean, newest.variance};
+  if (publish(none, nullptr)) statistics_after_ = 2 * of_session_;
+}
+
 /// @return false where others are too slow, or enough was told just now
 bool FleetTalk::tell(const SavedPlace& place) {
+  if (place.statistics) {
+    dds::FleetPlace none{.session = place.began_ns};
+    none.statistics = {place.statistics->frames, place.statistics->mean,
+                       place.statistics->variance};
+    return publish(none, nullptr);
+  }
   if (place.visits) {
     const auto visited = told_as_.find(*place.visits);
     // What has gone from the map was not told.
     if (visited == told_as_.end()) return true;
-    return publish({place.began_ns, place.frame, 0, {}, visited->second}, nullptr);
+    return publish({place.began_ns, place.frame, 0, {}, visited->second, {}}, nullptr);
   }
   if (std::exchange(session_, place.began_ns) != place.began_ns) {
     of_session_ = 0;
     about_.name = place.session;
   }
-  if (!publish({place.began_ns, place.frame, place.time_ns, place.bytes, {}},
+  if (!publish({place.began_ns, place.frame, place.time_ns, place.bytes, {}, {}},
                of_session_ % said_every == 0 ? &about_ : nullptr)) {
     return false;
   }
@@ -173,15 +203,18 @@ bool FleetTalk::tell(const SavedPlace& place) {
 
 bool FleetTalk::publish(const dds::FleetPlace& place, const dds::FleetSession* about) {
   if (!allowance_.left() || !wire_.publish(place, about)) return false;
-  allowance_.spend(place.bytes.size() + message_bytes);
+  std::size_t bytes = place.bytes.size() + message_bytes;
+  if (place.statistics) bytes += 2 * place.statistics->mean.size_bytes();
+  allowance_.spend(bytes);
   return true;
 }
 
 /// Hears as much as the loop has room for; the rest waits in DDS.
 void FleetTalk::hear() {
   const auto take = [this](const dds::FleetPlace& place, const dds::FleetSession* about) {
-    // A keeper tells this drive again.
+    // A keeper tells this drive again; and only a keeper wants statistics.
     if (newest_told_ && place.session == newest_told_->session) return;
+    if (place.statistics) return;
     if (place.visit) {
       if (const auto same = others_.same_place(place)) {
         heard_.push({same->session, place.frame, {}, {{same->visited, place.visit->frame}}});

@@ -68,10 +68,20 @@ class FleetTalk {
   [[nodiscard]] Counts counts();
 
  private:
+  // Statistics are told when a session has so many places, and twice as many, and so on; and last.
+  static constexpr std::uint64_t first_statistics = 64;
+
   /// A place that waits to be told.
   struct Waiting {
     SavedPlace place;  // without name and bytes
     std::vector<std::byte> bytes;
+  };
+  /// By what the running session is standardised.
+  struct Statistics {
+    std::int64_t began_ns = 0;
+    std::uint64_t frames = 0;  // 0: nothing is known
+    std::vector<double> mean;
+    std::vector<double> variance;
   };
   /// What was saved; the thread that saves may outlive this object.
   struct Saved {
@@ -81,7 +91,8 @@ class FleetTalk {
     const std::size_t room;
     std::mutex mutex;
     std::deque<Waiting> waiting;
-    std::string session;  // the running one's name
+    std::string session;    // the running one's name
+    Statistics statistics;  // the newest
     std::uint64_t untold = 0;
   };
 
@@ -89,6 +100,7 @@ class FleetTalk {
   void tell_earlier();
   void tell_newest();
   void tell_found();
+  void tell_statistics(std::uint64_t places);
   bool tell(const SavedPlace& place);
   bool publish(const dds::FleetPlace& place, const dds::FleetSession* about);
   void hear();
@@ -108,6 +120,7 @@ class FleetTalk {
   std::uint64_t told_ = 0;
   std::uint64_t of_session_ = 0;  // told of the session that was told of last
   std::int64_t session_ = 0;
+  std::uint64_t statistics_after_ = first_statistics;           // places of the running session
   std::optional<dds::FleetVisit> newest_told_;                  // of the running session
   std::unordered_map<std::uint64_t, dds::FleetVisit> told_as_;  // by number; 40 bytes a place
 

@@ -133,6 +133,15 @@ void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) 
     if (about == nullptr) return;
     open(*about);
   }
+  if (place.statistics) {
+    const auto index = others_->statistics(place);
+    if (!index) return;
+    begin(*index).statistics = {
+        place.statistics->frames,
+        {place.statistics->mean.begin(), place.statistics->mean.end()},
+        {place.statistics->variance.begin(), place.statistics->variance.end()}};
+    return;
+  }
   if (place.visit) {
     const auto same = others_->same_place(place);
     if (!same || links_.size() >= links_a_place * others_->places()) return;
@@ -190,12 +199,14 @@ void Keeper::save() {
   saved_ = std::chrono::steady_clock::now();
   try {
     for (Session& session : sessions_) {
-      if (session.records.empty() && session.links.empty()) continue;
+      if (session.records.empty() && session.links.empty() && !session.statistics) continue;
       try {
-        file_->save(session.id, {.frames = session.frames,
-                                 .records = session.records,
-                                 .places = session.bytes,
-                                 .links = session.links});
+        file_->save(session.id,
+                    {.frames = session.frames,
+                     .records = session.records,
+                     .places = session.bytes,
+                     .links = session.links,
+                     .statistics = session.statistics ? &*session.statistics : nullptr});
       } catch (const std::invalid_argument&) {
         session.closed = true;
         news_.push_back(
@@ -207,6 +218,7 @@ void Keeper::save() {
       session.records.clear();
       session.bytes.clear();
       session.links.clear();
+      session.statistics.reset();
     }
     if (std::exchange(failing_, false)) news_.emplace_back("what was told is saved again");
   } catch (const sqlite::SaveError& error) {
@@ -248,6 +260,7 @@ void Keeper::tell(const std::function<bool()>& stop) {
                        record.frame,
                        record.time_ns,
                        block.places.subspan(i * size, size),
+                       {},
                        {}},
                       says ? &about : nullptr, stop);
     }
@@ -257,8 +270,15 @@ void Keeper::tell(const std::function<bool()>& stop) {
     const auto place = told_as(*link.place);
     const auto other = told_as(link.other);
     if (place && other)
-      going = publish({place->session, place->frame, 0, {}, other}, nullptr, stop);
+      going = publish({place->session, place->frame, 0, {}, other, {}}, nullptr, stop);
   });
+  for (const auto& [id, session] : telling) {
+    const auto its = file_->statistics(id);
+    if (!going || !its) continue;
+    dds::FleetPlace none{.session = session->names.began_ns};
+    none.statistics = {its->frames, its->mean, its->variance};
+    going = publish(none, nullptr, stop);
+  }
   if (!going) return;
   for (const auto& [id, session] : telling) session->untold = session->frames;
 }

@@ -54,6 +54,7 @@ class Keeper {
     std::vector<sqlite::PlaceRecord> records;
     std::vector<std::byte> bytes;
     std::vector<sqlite::SavedLink> links;
+    std::optional<sqlite::SavedStatistics> statistics;
   };
 
   void open(const dds::FleetSession& about);

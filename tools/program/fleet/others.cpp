@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "program/fleet/fleet_settings.hpp"
 #include "program/process/say.hpp"
 
 namespace seqloop::program {
@@ -41,7 +43,7 @@ std::string title(const Others::Names& names) {
 Others::Others(dds::FleetSession own, std::vector<std::int64_t> in_map, std::size_t places)
     : own_(std::move(own)), in_map_(std::move(in_map)), room_(places) {
   std::ranges::sort(in_map_);
-  names_.reserve(most_sessions);
+  names_.reserve(most_fleet_sessions);
 }
 
 std::optional<std::uint32_t> Others::hear(const dds::FleetPlace& place,
@@ -100,15 +102,34 @@ std::optional<Others::SamePlace> Others::same_place(const dds::FleetPlace& place
   return SamePlace{*session, *visited};
 }
 
+std::optional<std::uint32_t> Others::statistics(const dds::FleetPlace& place) {
+  const auto found = sessions_.find(place.session);
+  if (found == sessions_.end() || found->second.refused || !found->second.index) {
+    return std::nullopt;
+  }
+  const dds::FleetStatistics& its = *place.statistics;
+  const auto can_be = [](double value) { return std::isfinite(value); };
+  const auto can_vary = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  if (its.frames > 0 && its.mean.size() == own_.descriptor_size &&
+      its.variance.size() == own_.descriptor_size && std::ranges::all_of(its.mean, can_be) &&
+      std::ranges::all_of(its.variance, can_vary)) {
+    return found->second.index;
+  }
+  found->second.refused = true;
+  tell(title(found->second.names) +
+       ": what it says of how its places were standardised cannot be: no more of it is taken in");
+  return std::nullopt;
+}
+
 /// @return null where nothing is known of the session, and nothing is to be
 Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSession* about) {
   const auto found = sessions_.find(place.session);
   if (found != sessions_.end()) return &found->second;
   if (about == nullptr) return nullptr;
-  if (sessions_.size() == most_sessions) {
+  if (sessions_.size() == most_fleet_sessions) {
     if (!std::exchange(crowded_, true)) {
       tell(fmt::format("other robots have more than {} sessions: what is beyond is not heard",
-                       most_sessions));
+                       most_fleet_sessions));
     }
     return nullptr;
   }

@@ -17,9 +17,6 @@ namespace seqloop::program {
 /// heard any more. For one thread.
 class Others {
  public:
-  /// Sessions that are known at a time, those that are not heard included.
-  static constexpr std::size_t most_sessions = 1024;
-
   /// @param own what all places must be like
   /// @param in_map sessions that the map has already: they come back from who has heard them
   /// @param places that there is room for
@@ -53,6 +50,11 @@ class Others {
   };
   /// @param place that says it is a visit. @return nothing where one of the two was not taken in
   [[nodiscard]] std::optional<SamePlace> same_place(const dds::FleetPlace& place) const;
+
+  /// @param place that says by what its session is standardised
+  /// @return the session's index; nothing where no place of it was taken in, or it says nonsense:
+  ///   then no more is taken in
+  [[nodiscard]] std::optional<std::uint32_t> statistics(const dds::FleetPlace& place);
 
   [[nodiscard]] const Names& names(std::uint32_t session) const { return names_[session]; }
 

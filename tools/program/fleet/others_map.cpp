@@ -4,14 +4,6 @@
 namespace seqloop::program {
 namespace {
 
-/// The drive is localised among others' places. None of them goes; but they come in any order, and
-/// search has room for that only where some might.
-MatcherConfig fleet_config(MatcherConfig config) {
-  config.use = Use::localise;
-  config.full_map = FullMap::forget_oldest;
-  return config;
-}
-
 /// Frames are standardised as those of the run are.
 PlaceMap& started_as(const PlaceMap& own, PlaceMap& map) {
   const RunningStatistics& known = own.statistics();
@@ -24,10 +16,24 @@ PlaceMap& started_as(const PlaceMap& own, PlaceMap& map) {
 
 }  // namespace
 
+// None of others' places goes; but they come in any order, and search has room for that only where
+// some might.
+MatcherConfig OthersMap::suited(MatcherConfig config) {
+  config.use = Use::localise;
+  config.full_map = FullMap::forget_oldest;
+  return config;
+}
+
+std::vector<BufferSize> OthersMap::plan(const Capacity& capacity) {
+  return {{"places that are one", capacity.places * sizeof(std::uint64_t)},
+          {"sessions as they were heard",
+           capacity.sessions * (2 * sizeof(std::uint32_t) + sizeof(SamePlaces::Told))}};
+}
+
 OthersMap::OthersMap(const MatcherConfig& config, std::size_t places, std::size_t sessions,
                      const PlaceMap& own)
-    : map_(fleet_config(config), {places, own.descriptor_size(), sessions}),
-      detector_(fleet_config(config), started_as(own, map_)),
+    : map_(suited(config), {places, own.descriptor_size(), sessions}),
+      detector_(suited(config), started_as(own, map_)),
       same_(map_, config.exclude),
       begun_(sessions, none),
       heard_of_(sessions, none),

@@ -17,6 +17,12 @@ namespace seqloop::program {
 /// one of the map. Steps allocate nothing.
 class OthersMap {
  public:
+  /// How the drive is localised in it. @param config of the run's own detector
+  [[nodiscard]] static MatcherConfig suited(MatcherConfig config);
+
+  /// What it takes beside its map and its detector. @param capacity room for places, sessions
+  [[nodiscard]] static std::vector<BufferSize> plan(const Capacity& capacity);
+
   /// A place of another robot.
   struct Place {
     std::uint32_t session = 0;  ///< as it was first heard

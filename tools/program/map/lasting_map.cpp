@@ -55,6 +55,7 @@ void read_places(const std::filesystem::path& path, const SavedPlaceReader& read
             record.frame,
             record.time_ns,
             block.places.subspan(i * bytes, bytes),
+            {},
             {}});
     }
   });
@@ -67,8 +68,16 @@ void read_places(const std::filesystem::path& path, const SavedPlaceReader& read
           link.frame,
           0,
           {},
-          link.other});
+          link.other,
+          {}});
   });
+  for (const auto& [id, session] : sessions) {
+    const auto its = file.statistics(id);
+    if (!its) continue;
+    SavedPlace none{session.began_ns, session.name};
+    none.statistics = {its->frames, its->mean, its->variance};
+    read(none);
+  }
 }
 
 class SqliteMap : public LastingMap {

@@ -28,6 +28,13 @@ struct PlaceForm {
   std::size_t place_bytes = 0;
 };
 
+/// By what a session's places were standardised.
+struct SessionStatistics {
+  std::uint64_t frames = 0;
+  std::span<const double> mean;      ///< [D]
+  std::span<const double> variance;  ///< [D]
+};
+
 /// A place that is on the disk.
 struct SavedPlace {
   std::int64_t began_ns = 0;  ///< when its session began, since 1970
@@ -38,6 +45,8 @@ struct SavedPlace {
   std::span<const std::byte> bytes{};
   /// Nothing new, and no bytes: it is a visit of the place of this number.
   std::optional<std::uint64_t> visits = {};
+  /// No place: what is known of its session by now.
+  std::optional<SessionStatistics> statistics = {};
 };
 using SavedPlaceReader = std::function<void(const SavedPlace&)>;
 

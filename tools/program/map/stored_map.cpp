@@ -111,10 +111,13 @@ void StoredMap::load(PlaceMap& map) {
     if (!link.place) return;
     if (const auto row = row_of(*link.place)) map.set_first_visit(*row, link.other);
   });
-  if (!newest) return;
-  if (const auto statistics = file_.statistics(*newest)) {
-    static_cast<void>(
-        map.set_statistics(statistics->mean, statistics->variance, statistics->frames));
+  // Of a robot's short session, a keeper may have none.
+  for (const sqlite::SessionFacts& session : file_.sessions()) {
+    if (session.places == 0) continue;
+    if (const auto statistics = file_.statistics(session.id)) {
+      static_cast<void>(
+          map.set_statistics(statistics->mean, statistics->variance, statistics->frames));
+    }
   }
 }
 
@@ -149,11 +152,16 @@ void StoredMap::tell(const sqlite::MapBatch& batch, const SavedPlaceReader& read
           record.frame,
           record.time_ns,
           batch.places.subspan(i * size, size),
+          {},
           {}});
   }
   for (const sqlite::SavedLink& link : batch.links) {
-    if (link.place) read({began, name, *link.place, link.frame, 0, {}, link.other});
+    if (link.place) read({began, name, *link.place, link.frame, 0, {}, link.other, {}});
   }
+  if (batch.statistics == nullptr) return;
+  SavedPlace none{began, name};
+  none.statistics = {batch.statistics->frames, batch.statistics->mean, batch.statistics->variance};
+  read(none);
 }
 
 PlaceForm StoredMap::form() const {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "program/run/frame_times.hpp"
+#include "program/run/other_loop.hpp"
 #include "seqloop/frame_report.hpp"
 #include "seqloop/ros/loop_closure.hpp"
 
@@ -37,10 +38,19 @@ namespace seqloop::program {
           .frame = answer.frame,
           .match = answer.match->place,
           .session = session,
+          .robot = {},
           .probability = static_cast<double>(answer.probability),
           .uniqueness = static_cast<double>(answer.match->uniqueness),
           .score = static_cast<double>(answer.match->score),
           .velocity = answer.match->velocity};
+}
+
+/// The same of a place of another robot.
+[[nodiscard]] inline ros::LoopClosure closure_of(const OtherLoop& loop, const FrameTimes& times,
+                                                 std::int64_t start_ns) noexcept {
+  ros::LoopClosure closure = closure_of(loop.answer, times, start_ns, false, loop.session.view());
+  closure.robot = loop.robot.view();
+  return closure;
 }
 
 }  // namespace seqloop::program

@@ -20,6 +20,13 @@ void ClosuresBag::add(std::span<const Answer> answers, const FrameTimes& times,
   }
 }
 
+void ClosuresBag::add(std::span<const OtherLoop> loops, const FrameTimes& times,
+                      std::int64_t start_ns) {
+  for (const OtherLoop& loop : loops) {
+    bag_.add(closure_of(loop, times, start_ns), stamp_of(start_ns, times.newest_s()));
+  }
+}
+
 void ClosuresBag::commit() {
   bag_.finish();
   out_.commit();

@@ -6,6 +6,7 @@
 
 #include "program/map/lasting_map.hpp"
 #include "program/run/frame_times.hpp"
+#include "program/run/other_loop.hpp"
 #include "seqloop/bags/loop_bag.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/frame_report.hpp"
@@ -24,6 +25,8 @@ class ClosuresBag {
   /// @param map that places are of; null: none that lasts. Throws files::IoError.
   void add(std::span<const Answer> answers, const FrameTimes& times, std::int64_t start_ns,
            bool own_places, const LastingMap* map);
+
+  void add(std::span<const OtherLoop> loops, const FrameTimes& times, std::int64_t start_ns);
 
   /// Throws files::IoError.
   void commit();

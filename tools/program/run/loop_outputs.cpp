@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/loop_outputs.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "program/options/verb.hpp"
@@ -28,12 +28,13 @@ void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings)
                "the frames' poses by odometry (TUM) [none]");
 }
 
-LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, Faults& faults)
+LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, bool closing,
+                         Faults& faults)
     : own_places_(own_places) {
   const bool wants_graph = !settings.pose_graph.empty() || !settings.trajectory.empty();
-  if (!settings.pose_graph.empty() && !own_places) {
+  if (!settings.pose_graph.empty() && !closing) {
     faults.push_back({"pose-graph", "the poses of the reference are not known",
-                      "leave --reference and --map out: loops are closed within the drive"});
+                      "leave --reference and --read-only out: loops are closed within the drive"});
   }
   if (wants_graph && settings.odometry.empty()) {
     faults.push_back({settings.pose_graph.empty() ? "trajectory" : "pose-graph",
@@ -88,11 +89,29 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
 void LoopOutputs::add(std::span<const Answer> answers) {
   if (bag_) bag_->add(answers, times_, drive_.start_ns(), own_places_, drive_.map);
   if (!graph_) return;
-  if (topic_.empty()) {
-    graph_->add(answers);
-  } else {
-    std::ranges::copy_if(answers, std::back_inserter(loops_), closes_loop);
+  for (const Answer& answer : answers) {
+    if (!closes_loop(answer)) continue;
+    const auto frame = frame_of(answer.match->place);
+    if (!frame) {
+      ++of_earlier_;
+      continue;
+    }
+    loops_.push_back(answer);
+    loops_.back().match->place = static_cast<std::size_t>(*frame);
   }
+  if (topic_.empty()) graph_->add(std::exchange(loops_, {}));
+}
+
+void LoopOutputs::add(std::span<const OtherLoop> loops) {
+  if (bag_) bag_->add(loops, times_, drive_.start_ns());
+  of_others_ += loops.size();
+}
+
+/// @return the drive's frame that a place is; nothing where it is of another drive
+std::optional<std::uint64_t> LoopOutputs::frame_of(std::uint64_t place) const {
+  if (own_places_ || drive_.map == nullptr) return place;
+  if (place < drive_.map->sessions().back().first) return std::nullopt;
+  return drive_.map->where(place).frame;
 }
 
 void LoopOutputs::end() {
@@ -105,7 +124,16 @@ void LoopOutputs::end() {
 }
 
 std::vector<std::string> LoopOutputs::notes() const {
-  return graph_ ? graph_->notes() : std::vector<std::string>();
+  if (!graph_) return {};
+  std::vector<std::string> lines = graph_->notes();
+  const auto leave_out = [&lines](std::uint64_t loops, const char* whose) {
+    if (loops == 0) return;
+    lines.push_back(fmt::format(
+        "{} loops with places of {} are left out of it: their poses are not known", loops, whose));
+  };
+  leave_out(of_earlier_, "earlier sessions, or that the map has forgotten,");
+  leave_out(of_others_, "other robots");
+  return lines;
 }
 
 void LoopOutputs::commit() {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "program/options/options.hpp"
 #include "program/run/closures_bag.hpp"
 #include "program/run/frame_times.hpp"
+#include "program/run/other_loop.hpp"
 #include "program/run/pose_graph.hpp"
 #include "seqloop/frame_source.hpp"
 #include "seqloop/pipeline.hpp"
@@ -52,7 +54,8 @@ class LoopOutputs {
  public:
   /// Opens the files. Adds faults where it cannot.
   /// @param own_places whether places are frames of the drive itself
-  LoopOutputs(const LoopOutputSettings& settings, bool own_places, Faults& faults);
+  /// @param closing whether frames of the drive are places, beside those of a map that lasts
+  LoopOutputs(const LoopOutputSettings& settings, bool own_places, bool closing, Faults& faults);
 
   /// Reads the odometry of a recording. Throws SetupError.
   void begin(const LoopOutputSettings& settings, LoopDrive drive);
@@ -60,6 +63,7 @@ class LoopOutputs {
   /// Throw files::IoError.
   void add(const ProcessedFrame& processed);
   void add(std::span<const Answer> answers);
+  void add(std::span<const OtherLoop> loops);
   void commit();
 
   /// All answers are there: takes the odometry that has come meanwhile. Throws SetupError.
@@ -69,10 +73,14 @@ class LoopOutputs {
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
+  [[nodiscard]] std::optional<std::uint64_t> frame_of(std::uint64_t place) const;
+
   bool own_places_;
   LoopDrive drive_;
-  std::string topic_;          // of odometry that comes while the drive goes on
-  std::vector<Answer> loops_;  // that wait for it
+  std::string topic_;             // of odometry that comes while the drive goes on
+  std::vector<Answer> loops_;     // within the drive, by its frames' numbers
+  std::uint64_t of_earlier_ = 0;  // loops with places of earlier sessions
+  std::uint64_t of_others_ = 0;   // and of other robots
   FrameTimes times_;
   std::unique_ptr<ClosuresBag> bag_;
   std::unique_ptr<PoseGraph> graph_;

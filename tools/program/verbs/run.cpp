@@ -201,13 +201,17 @@ void run(const RunSettings& settings, Faults faults) {
     numbers.rename(*processed);
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
-    const MapState kept{map.size(), setup.map ? setup.map->saved() : 0};
+    MapState kept{map.size(), setup.map ? setup.map->saved() : 0};
+    if (fleet) kept.of_others = fleet->places();
     if (serving) serving->watch().publish(*processed, state, summary, kept, clock.now());
     if (ros) ros->publish(*processed, state, summary, kept, clock.now());
+    if (fleet && serving) serving->watch().publish(fleet->loops());
+    if (fleet && ros) ros->publish(fleet->loops());
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     attempt([&] { lines.add(*processed, state); });
     attempt([&] { setup.loops->add(*processed); });
+    if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });
     if (unwritten) break;
     trouble.tell(*processed, clock.now());
     if (processed->report.gate == Gate::no_frame) {
@@ -229,7 +233,7 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   const std::span<const Answer> rest = detector.finish();
-  if (fleet) fleet->finish();
+  if (fleet) fleet->finish(rest);
   const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
   recorder.add(rest);
   summary.add(rest);
@@ -243,9 +247,12 @@ void run(const RunSettings& settings, Faults faults) {
   const std::span<const Answer> last = numbers.rename(rest);
   if (serving) serving->watch().publish(last);
   if (ros) ros->publish(last);
+  if (fleet && serving) serving->watch().publish(fleet->loops());
+  if (fleet && ros) ros->publish(fleet->loops());
   // The answers first: a driver that hangs may keep the capture thread from ending.
   if (!unwritten) attempt([&] { lines.end(last); });
   attempt([&] { setup.loops->add(last); });
+  if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });
   if (fleet) {
     const std::string told = fleet->end();
     while (const auto news = fleet->trouble()) say("{}", *news);

@@ -16,6 +16,7 @@ void RosAnswers::publish(const ProcessedFrame& /*processed*/, const LoopState& /
                          const RunSummary& /*summary*/, const MapState& /*map*/,
                          Nanoseconds /*moment*/) noexcept {}
 void RosAnswers::publish(std::span<const Answer> /*answers*/) noexcept {}
+void RosAnswers::publish(std::span<const OtherLoop> /*loops*/) noexcept {}
 std::uint64_t RosAnswers::end() { return 0; }
 
 }  // namespace seqloop::program

@@ -101,10 +101,21 @@ class RosAnswers::Impl {
           times_.add(snapshot.frame.report.newest, snapshot.frame.frame.time_s);
         },
         [this, all](const Answer& answer) {
-          if (!all && !times_.at(answer.frame) && answer.frame > newest_frame()) return false;
+          if (!all && !has_come(answer)) return false;
           if (closes_loop(answer)) send(answer);
           return true;
+        },
+        [this, all](const OtherLoop& loop) {
+          if (!all && !has_come(loop.answer)) return false;
+          ++matches_;
+          count(publisher_.publish(closure_of(loop, times_, start_ns_)));
+          return true;
         });
+  }
+
+  /// Whether the frame that an answer is about has come here.
+  [[nodiscard]] bool has_come(const Answer& answer) const {
+    return times_.at(answer.frame) || answer.frame <= newest_frame();
   }
 
   void send(const Answer& answer) {
@@ -245,6 +256,8 @@ void RosAnswers::publish(const ProcessedFrame& processed, const LoopState& state
 void RosAnswers::publish(std::span<const Answer> answers) noexcept {
   impl_->watch.publish(answers);
 }
+
+void RosAnswers::publish(std::span<const OtherLoop> loops) noexcept { impl_->watch.publish(loops); }
 
 std::uint64_t RosAnswers::end() {
   impl_->end();

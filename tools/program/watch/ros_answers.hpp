@@ -44,6 +44,7 @@ class RosAnswers {
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
                const MapState& map, Nanoseconds moment) noexcept;
   void publish(std::span<const Answer> answers) noexcept;
+  void publish(std::span<const OtherLoop> loops) noexcept;
 
   /// Sends what waits, and gives subscribers a second to get it. Nothing is published afterwards.
   /// @return messages that were dropped

@@ -59,6 +59,10 @@ void RunSite::take() {
       [this](const Answer& answer) {
         view_.take(answer);
         return true;
+      },
+      [this](const OtherLoop& loop) {
+        view_.take(loop);
+        return true;
       });
   // It goes on while the loop is paused, and tells of no frame.
   if (map_ != nullptr) view_.take_saved(map_->saved());
@@ -309,7 +313,10 @@ http::Reply RunSite::judge(const Json& wish) {
   if (!wish.contains("loop") || !wish["loop"].is_number_unsigned())
     return fault(400, "loop is the number of a loop");
   const auto number = wish["loop"].get<std::size_t>();
-  if (!view_.judge(number, verdict)) return fault(404, "there is no such loop");
+  if (!view_.judge(number, verdict)) {
+    return fault(404, number < view_.loop_count() ? "it is a loop with another robot's place"
+                                                  : "there is no such loop");
+  }
   if (map_ != nullptr) {
     const Loop& loop = view_.loop_list()[number];
     map_->judge(loop.frame, loop.match, verdict);

@@ -87,7 +87,20 @@ void RunView::take(const Answer& answer) {
   ++loops_seen_;
   if (loop_list_.size() == most_loops) return;
   loop_list_.push_back({answer.frame, answer.match->place, time_of(answer.frame),
-                        answer.probability, answer.match->uniqueness, Verdict::none});
+                        answer.probability, answer.match->uniqueness, Verdict::none, std::nullopt});
+}
+
+void RunView::take(const OtherLoop& loop) {
+  ++loops_of_others_;
+  ++loops_seen_;
+  if (loop_list_.size() == most_loops) return;
+  const std::pair<std::string, std::string> whose(loop.robot.view(), loop.session.view());
+  const auto known = std::ranges::find(others_, whose);
+  const auto other = static_cast<std::uint32_t>(known - others_.begin());
+  if (known == others_.end()) others_.push_back(whose);
+  const Answer& answer = loop.answer;
+  loop_list_.push_back({answer.frame, answer.match->place, time_of(answer.frame),
+                        answer.probability, answer.match->uniqueness, Verdict::none, other});
 }
 
 double RunView::time_of(std::uint64_t frame) const {
@@ -146,6 +159,9 @@ Json RunView::status() const {
   json["loops"] = {{"count", loops_seen_},
                    {"listed", loop_list_.size()},
                    {"rejected", std::ranges::count(loop_list_, Verdict::rejected, &Loop::verdict)}};
+  if (newest_.map.of_others) {
+    json["fleet"] = {{"places", *newest_.map.of_others}, {"loops", loops_of_others_}};
+  }
   json["marks"] = marks_.size();
   return json;
 }
@@ -202,6 +218,9 @@ Json RunView::loops(std::size_t first, std::size_t count) const {
          {"probability", finite(static_cast<double>(loop.probability))},
          {"uniqueness", finite(static_cast<double>(loop.uniqueness))},
          {"verdict", loop.verdict == Verdict::none ? Json(nullptr) : Json(word(loop.verdict))}});
+    if (!loop.other) continue;
+    json["loops"].back()["robot"] = others_[*loop.other].first;
+    json["loops"].back()["session"] = others_[*loop.other].second;
   }
   return json;
 }
@@ -221,7 +240,7 @@ std::string RunView::truth_csv() const {
 }
 
 bool RunView::judge(std::size_t loop, Verdict verdict) {
-  if (loop >= loop_list_.size()) return false;
+  if (loop >= loop_list_.size() || loop_list_[loop].other) return false;
   loop_list_[loop].verdict = verdict;
   return true;
 }

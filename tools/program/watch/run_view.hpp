@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "program/map/verdict.hpp"
@@ -23,6 +24,8 @@ struct Loop {
   float probability = 0.0F;
   float uniqueness = 0.0F;
   Verdict verdict = Verdict::none;
+  /// Of another robot's place, which of those sessions it is of; `match` is its frame there.
+  std::optional<std::uint32_t> other = std::nullopt;
 };
 
 /// A place that a person marked.
@@ -58,6 +61,7 @@ class RunView {
   /// @param now_s seconds on any clock that goes on
   void take(const Snapshot& snapshot, double now_s);
   void take(const Answer& answer);
+  void take(const OtherLoop& loop);
   /// @param frames that are on the disk for good, newer than the newest snapshot's
   void take_saved(std::uint64_t frames) { newest_.map.saved = frames; }
 
@@ -76,7 +80,7 @@ class RunView {
   /// `query,reference` of the loops that a person accepted, or `query,name` of marks.
   [[nodiscard]] std::string truth_csv() const;
 
-  /// @return whether there is such a loop
+  /// @return whether there is such a loop, and it is none with another robot
   [[nodiscard]] bool judge(std::size_t loop, Verdict verdict);
   /// Marks the newest frame. @return whether there was room
   [[nodiscard]] bool mark(std::string_view name);
@@ -113,6 +117,8 @@ class RunView {
   std::optional<Answer> last_match_;
   std::vector<Loop> loop_list_;
   std::uint64_t loops_seen_ = 0;
+  std::uint64_t loops_of_others_ = 0;
+  std::vector<std::pair<std::string, std::string>> others_;  // robots and sessions of loops
   std::vector<Mark> marks_;
   std::deque<Trouble> troubles_;  // newest ones, the newest last
   std::optional<double> frame_at_s_;

@@ -12,8 +12,10 @@ namespace seqloop::program {
 /// @param on_frame called with each `Snapshot`
 /// @param on_answer called with each `Answer`; returns false to leave it, and those after it, for
 ///   the next time
-template <class OnFrame, class OnAnswer>
-void take(Watch& watch, PictureStore& pictures, OnFrame&& on_frame, OnAnswer&& on_answer) {
+/// @param on_loop called with each `OtherLoop`, likewise
+template <class OnFrame, class OnAnswer, class OnLoop>
+void take(Watch& watch, PictureStore& pictures, OnFrame&& on_frame, OnAnswer&& on_answer,
+          OnLoop&& on_loop) {
   while (const Snapshot* snapshot = watch.frames().front()) {
     on_frame(*snapshot);
     watch.frames().pop();
@@ -24,8 +26,12 @@ void take(Watch& watch, PictureStore& pictures, OnFrame&& on_frame, OnAnswer&& o
   }
   watch.wishes.every.store(pictures.every(), std::memory_order_relaxed);
   while (const Answer* answer = watch.answers().front()) {
-    if (!on_answer(*answer)) return;
+    if (!on_answer(*answer)) break;
     watch.answers().pop();
+  }
+  while (const OtherLoop* loop = watch.loops().front()) {
+    if (!on_loop(*loop)) break;
+    watch.loops().pop();
   }
 }
 

@@ -64,6 +64,12 @@ void Watch::publish(std::span<const Answer> answers) noexcept {
   }
 }
 
+void Watch::publish(std::span<const OtherLoop> loops) noexcept {
+  for (const OtherLoop& loop : loops) {
+    if (!loops_.push(loop)) unseen_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
 void Watch::publish_picture(const ProcessedFrame& processed, Nanoseconds moment) noexcept {
   const std::uint64_t number = processed.report.newest;
   const bool kept = number % wishes.every.load(std::memory_order_relaxed) == 0;

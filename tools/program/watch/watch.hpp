@@ -8,6 +8,7 @@
 #include <span>
 
 #include "program/drives/small_picture.hpp"
+#include "program/run/other_loop.hpp"
 #include "program/run/run_summary.hpp"
 #include "seqloop/fixed_text.hpp"
 #include "seqloop/linux/detail/return_queue.hpp"
@@ -45,6 +46,7 @@ struct RunCounts {
 struct MapState {
   std::size_t places = 0;
   std::uint64_t saved = 0;  ///< frames of the drive that are on the disk for good
+  std::optional<std::size_t> of_others = std::nullopt;  ///< places of other robots; none: no fleet
 };
 
 /// All that is shown of a frame, in fixed memory.
@@ -80,15 +82,19 @@ class Watch {
                const MapState& map, Nanoseconds moment) noexcept;
   /// Answers that were due at the end.
   void publish(std::span<const Answer> answers) noexcept;
+  /// Loops with other robots.
+  void publish(std::span<const OtherLoop> loops) noexcept;
 
   // The watcher's side, one thread.
   using Frames = live::ReturnQueue<Snapshot, 512>;
   using Answers = live::ReturnQueue<Answer, 8192>;
+  using Loops = live::ReturnQueue<OtherLoop, 512>;
   using Pictures = live::ReturnQueue<SmallPicture, 32>;
   [[nodiscard]] Frames& frames() noexcept { return frames_; }
   [[nodiscard]] Answers& answers() noexcept { return answers_; }
+  [[nodiscard]] Loops& loops() noexcept { return loops_; }
   [[nodiscard]] Pictures& pictures() noexcept { return pictures_; }
-  /// Frames and answers that found no room.
+  /// Frames, answers and loops that found no room.
   [[nodiscard]] std::uint64_t unseen() const noexcept { return unseen_; }
 
   Wishes wishes;
@@ -99,6 +105,7 @@ class Watch {
 
   Frames frames_;
   Answers answers_;
+  Loops loops_;
   Pictures pictures_;
   std::atomic<std::uint64_t> unseen_{0};
 

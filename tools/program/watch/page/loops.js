@@ -74,13 +74,16 @@ const list = {count: 0, page: 0, shown: ''};
 
 function loopItem(loop) {
   const pair = make('div', {class: 'pair'});
+  const place = loop.robot === undefined ? placeName(loop.match)
+                                         : `${number(loop.match)} of robot ${loop.robot}, session ${loop.session}`;
   const item = make('li', {class: loop.verdict, 'data-loop': loop.number}, pair, make('p', {},
-    `Loop ${number(loop.number + 1)}: frame ${number(loop.frame)} is place ${placeName(loop.match)}, ` +
+    `Loop ${number(loop.number + 1)}: frame ${number(loop.frame)} is place ${place}, ` +
     (loop.probability === null ? `uniqueness ${loop.uniqueness.toFixed(2)}` : `probability ${loop.probability.toFixed(3)}`) +
     (loop.time_s === null ? '' : `, at ${loop.time_s.toFixed(1)} s`)));
-  if (!report) showPair(pair, loop.frame, loop.match, false);
+  // Other robots tell no pictures, and their maps are not here.
+  if (!report && loop.robot === undefined) showPair(pair, loop.frame, loop.match, false);
   else pair.remove();
-  if (token) {
+  if (token && loop.robot === undefined) {
     const verdicts = make('p');
     for (const [verdict, word] of [['accepted', 'accept'], ['rejected', 'reject']]) {
       const button = make('button', {'aria-pressed': String(loop.verdict === verdict),

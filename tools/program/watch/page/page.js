@@ -86,6 +86,7 @@ function showStatus(status) {
   const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
   fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
     ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', sessionNames(run.sessions)]]),
+    ...(status.fleet ? [['fleet', `${number(status.fleet.places)} places of other robots, ${number(status.fleet.loops)} loops with them`]] : []),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
     ['k', frame ? number(frame.k) : '–'], ['full_search', yes(frame && frame.full_search)],
     ['map_full', yes(frame && frame.map_full)],

@@ -29,6 +29,7 @@ const HELP = {
   places: 'places in the map, and how many it has room for',
   saved: 'frames of this drive that are on the disk for good',
   sessions: 'drives in the map, this one among them',
+  fleet: 'what is known of other robots; loops with their places are listed by robot, and are in no pose graph, since their poses are not known',
   candidates: 'rows of the map that got a score at this frame',
   distances: 'descriptor distances computed for this frame',
   k: 'candidate ranges in force; 0 where all rows are candidates',

@@ -30,6 +30,13 @@ struct FleetVisit {
   std::uint64_t frame = 0;
 };
 
+/// By what a session's places were standardised.
+struct FleetStatistics {
+  std::uint64_t frames = 0;
+  std::span<const double> mean;      ///< [D]
+  std::span<const double> variance;  ///< [D]
+};
+
 /// A place that a robot has saved.
 struct FleetPlace {
   std::int64_t session = 0;  ///< when it began, in nanoseconds since 1970: its name for ever
@@ -38,6 +45,8 @@ struct FleetPlace {
   std::span<const std::byte> bytes{};
   /// Nothing new: the place was told before, and this is the same place, seen earlier.
   std::optional<FleetVisit> visit = {};
+  /// No place, but what is known of its session by now.
+  std::optional<FleetStatistics> statistics = {};
 };
 
 /// Places that robots tell each other, on the topic `seqloop_fleet/places`

@@ -15,6 +15,7 @@ struct LoopClosure {
   std::uint64_t frame = 0;
   std::uint64_t match = 0;
   std::string_view session = {};  ///< of the place; empty: there is no map that lasts
+  std::string_view robot = {};    ///< of a fleet; empty: this one
   double probability = 0.0;       ///< NaN: decided by uniqueness
   double uniqueness = 0.0;        ///< NaN: none
   double score = 0.0;
