@@ -44,6 +44,31 @@ void in_pieces(std::size_t count, std::size_t most, Work work) {
   }
 }
 
+/// Consecutive queries and rows that are compared in one go.
+template <class Value>
+struct QueriesByRows {
+  std::size_t query;
+  std::span<const std::span<Value>> columns;  // one a query
+  std::size_t row;
+  std::size_t count;
+};
+
+/// Calls `work(block)` for rows that are few enough, and for all queries: for those up to the end
+/// of their ring, and for those from its beginning on.
+template <class Value, class Work>
+void in_blocks(std::size_t ring, std::size_t query, std::span<const std::span<Value>> columns,
+               Work work) {
+  if (columns.empty()) return;
+  const std::size_t before_end = std::min(columns.size(), ring - query);
+  in_pieces(columns.front().size(), block_abreast, [&](std::size_t row, std::size_t count) {
+    work(QueriesByRows<Value>{query, columns.first(before_end), row, count});
+    if (before_end == columns.size()) return;
+    work(QueriesByRows<Value>{0, columns.subspan(before_end), row, count});
+  });
+}
+
+float root(double square) noexcept { return static_cast<float>(std::sqrt(square)); }
+
 /// Writes a number, the lowest byte first.
 template <class Number>
 void put(Number number, std::span<std::byte> out) {
@@ -244,8 +269,7 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
   in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
     float_column_->squares(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
                            squares.data());
-    std::ranges::transform(std::span(squares).first(count), out.subspan(begin).begin(),
-                           [](double square) { return static_cast<float>(std::sqrt(square)); });
+    std::ranges::transform(std::span(squares).first(count), out.subspan(begin).begin(), root);
   });
 }
 
@@ -272,22 +296,31 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
+                             std::span<const std::span<float>> out) const noexcept {
+  std::array<double, MatcherConfig::most_frames_at_once * block_abreast> squares;
+  in_blocks(queries.exact_.size() / stride_, query, out, [&](const auto& block) {
+    float_column_->squares_block(queries.exact(block.query).data(), block.columns.size(),
+                                 exact(block.row).data(), stride_, block.count, squares.data(),
+                                 block_abreast);
+    for (std::size_t q = 0; q < block.columns.size(); ++q) {
+      std::ranges::transform(std::span(squares).subspan(q * block_abreast, block.count),
+                             block.columns[q].subspan(block.row).begin(), root);
+    }
+  });
+}
+
+void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
                              std::span<const std::span<std::uint16_t>> out) const noexcept {
-  if (out.empty()) return;
   std::array<std::int32_t, MatcherConfig::most_frames_at_once * block_abreast> dots;
-  in_pieces(out.front().size(), block_abreast, [&](std::size_t begin, std::size_t count) {
-    const auto compare_with = [&](std::size_t first, std::span<const std::span<std::uint16_t>> to) {
-      kernels_->dot_block(queries.small(first).data(), to.size(), small(begin).data(), stride_,
-                          count, dots.data(), block_abreast);
-      for (std::size_t q = 0; q < to.size(); ++q) {
-        fixed_distances(std::span(dots).subspan(q * block_abreast, count),
-                        queries.inverse_lengths_[first + q], inverse_lengths_.subspan(begin, count),
-                        to[q].subspan(begin, count));
-      }
-    };
-    const std::size_t before_end = std::min(out.size(), queries.inverse_lengths_.size() - query);
-    compare_with(query, out.first(before_end));
-    if (before_end < out.size()) compare_with(0, out.subspan(before_end));
+  in_blocks(queries.inverse_lengths_.size(), query, out, [&](const auto& block) {
+    kernels_->dot_block(queries.small(block.query).data(), block.columns.size(),
+                        small(block.row).data(), stride_, block.count, dots.data(), block_abreast);
+    for (std::size_t q = 0; q < block.columns.size(); ++q) {
+      fixed_distances(std::span(dots).subspan(q * block_abreast, block.count),
+                      queries.inverse_lengths_[block.query + q],
+                      inverse_lengths_.subspan(block.row, block.count),
+                      block.columns[q].subspan(block.row, block.count));
+    }
   });
 }
 

@@ -98,8 +98,11 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
 
 std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
                             std::span<FrameReport> reports) noexcept {
+  const bool in_blocks =
+      config_.arithmetic == Arithmetic::int8 ||
+      (config_.arithmetic == Arithmetic::float32 && config_.difference == Difference::euclidean);
   const bool at_once = config_.candidates == Candidates::all && config_.use == Use::localise &&
-                       config_.arithmetic == Arithmetic::int8 && !config_.enhance;
+                       !config_.enhance && in_blocks;
   const std::size_t count = std::min({descriptors.size(), reports.size(), config_.frames_at_once});
   pending_.clear();
   if (!at_once) {

@@ -105,12 +105,20 @@ std::size_t DifferenceSlices::fill(const PlaceMap& map, std::uint64_t frame, std
 }
 
 void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexcept {
-  std::array<std::span<std::uint16_t>, MatcherConfig::most_frames_at_once> columns;
   const std::uint64_t first = queries_->frames() - count;
-  for (std::size_t i = 0; i < count; ++i) {
-    columns[i] = whole_differences_.take_over(first + i, map.size());
+  const auto fill = [&]<class Value>(ColumnRing<Value>& differences) {
+    std::array<std::span<Value>, MatcherConfig::most_frames_at_once> columns;
+    for (std::size_t i = 0; i < count; ++i) {
+      columns[i] = differences.take_over(first + i, map.size());
+    }
+    const std::span<const std::span<Value>> newest = std::span(columns).first(count);
+    map.rows().compare(queries_->rows(), queries_->row_of(first), newest);
+  };
+  if (whole_) {
+    fill(whole_differences_);
+  } else {
+    fill(exact_);
   }
-  map.rows().compare(queries_->rows(), queries_->row_of(first), std::span(columns).first(count));
 }
 
 std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,

@@ -20,9 +20,17 @@ void squares(const float* query, const float* rows, std::size_t stride, std::siz
   }
 }
 
+void squares_block(const float* queries, std::size_t queries_count, const float* rows,
+                   std::size_t stride, std::size_t count, double* sums,
+                   std::size_t out_stride) noexcept {
+  for (std::size_t query = 0; query < queries_count; ++query) {
+    squares(queries + query * stride, rows, stride, count, sums + query * out_stride);
+  }
+}
+
 }  // namespace
 
-constinit const FloatColumn float_plain{"plain", &always, &squares};
+constinit const FloatColumn float_plain{"plain", &always, &squares, &squares_block};
 
 }  // namespace kernels
 

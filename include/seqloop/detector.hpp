@@ -68,9 +68,9 @@ class Detector {
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
-  /// Takes several frames of a recording: the same answers as by as many steps. Where all rows are
-  /// candidates and localising is by `int8`, places are read once for all of these frames, which is
-  /// several times faster.
+  /// Takes several frames of a recording: the same answers as by as many steps. Localising, where
+  /// all rows are candidates, compared by `int8` or by Euclid's distances of floats, places are
+  /// read once for all of these frames, which is several times faster.
   /// @param descriptors each as `step` takes it
   /// @param reports     written; their answers stand until the next step
   /// @return how many frames were taken, the first ones: all, or `MatcherConfig::frames_at_once`,

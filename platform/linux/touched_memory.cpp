@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <string>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include "seqloop/fault.hpp"
 
@@ -41,17 +39,16 @@ TouchedMemory::TouchedMemory(std::uint64_t bytes) {
   // Shares are whole numbers of pages, up to the last one's end.
   const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t share = (size / processors / least_share + 1) * least_share;
-  std::vector<std::jthread> others;
-  for (std::size_t first = share; first < size; first += share) {
-    others.emplace_back(touch, span_.subspan(first, std::min(share, size - first)));
+  for (std::size_t first = 0; first < size; first += share) {
+    touching_.emplace_back(touch, span_.subspan(first, std::min(share, size - first)));
   }
-  touch(span_.first(std::min(share, size)));
 }
 
 TouchedMemory::TouchedMemory(TouchedMemory&& other) noexcept
-    : span_(std::exchange(other.span_, {})) {}
+    : span_(std::exchange(other.span_, {})), touching_(std::move(other.touching_)) {}
 
 TouchedMemory::~TouchedMemory() {
+  wait();
   if (!span_.empty()) ::munmap(span_.data(), span_.size());
 }
 

@@ -11,7 +11,8 @@ namespace seqloop::kernels {
 namespace {
 
 /// vpmaddubsw multiplies unsigned values by signed ones and adds up pairs, which fit 16 bits as
-/// long as no value is -128: a row's sizes by the query's values with the row's signs.
+/// long as no value is -128: a query's sizes by the row's values, all bits of which are turned over
+/// where the query's is negative: the negative less 1, which any execution unit computes.
 struct Products {
   // Not __m256i: GCC 12 would copy every sum from type to type in the loop, and keep one in memory.
   struct Sum {
@@ -19,34 +20,34 @@ struct Products {
   };
   struct Row {
     __m256i values;
-    __m256i sizes;
   };
   struct Query {
-    __m256i values;
+    __m256i sizes;
+    __m256i signs;
   };
   static constexpr std::size_t step = 32;
-  static constexpr std::uint32_t row_offset = 0;
-  static constexpr std::size_t block_queries = 4;
-  static constexpr std::size_t block_rows = 2;
+  static constexpr bool exceeds = true;
+  static constexpr std::size_t block_queries = 2;
+  static constexpr std::size_t block_rows = 4;
   static constexpr std::size_t column_rows = 4;
 
   static Sum zero() noexcept { return {__v8si(_mm256_setzero_si256())}; }
 
   static Row row(const std::int8_t* from) noexcept {
-    const __m256i values = query(from).values;
-    return {values, _mm256_abs_epi8(values)};
-  }
-
-  static Query query(const std::int8_t* from) noexcept {
     __m256i values = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     // Stays in a register: GCC would load it anew for every product.
     __asm__("" : "+x"(values));
     return {values};
   }
 
+  static Query query(const std::int8_t* from) noexcept {
+    const __m256i values = row(from).values;
+    return {_mm256_abs_epi8(values), _mm256_cmpgt_epi8(_mm256_setzero_si256(), values)};
+  }
+
   static Sum add(Sum sum, Row row, Query query) noexcept {
     const __m256i pairs =
-        _mm256_maddubs_epi16(row.sizes, _mm256_sign_epi8(query.values, row.values));
+        _mm256_maddubs_epi16(query.sizes, _mm256_xor_si256(row.values, query.signs));
     return {sum.lanes + __v8si(_mm256_madd_epi16(pairs, _mm256_set1_epi16(1)))};
   }
 
@@ -87,6 +88,6 @@ void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
 constinit const IntegerKernels avx2 =
     composed_of<Products, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
 
-constinit const FloatColumn float_avx2{"avx2", &has_avx2, &squares};
+constinit const FloatColumn float_avx2{"avx2", &has_avx2, &squares, &squares_block};
 
 }  // namespace seqloop::kernels

@@ -31,6 +31,6 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
 constinit const IntegerKernels avx512 =
     composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512);
 
-constinit const FloatColumn float_avx512{"avx512", &has_avx512, &squares};
+constinit const FloatColumn float_avx512{"avx512", &has_avx512, &squares, &squares_block};
 
 }  // namespace seqloop::kernels

@@ -20,7 +20,7 @@ struct Products {
     __m256i values;
   };
   static constexpr std::size_t step = 32;
-  static constexpr std::uint32_t row_offset = 128;
+  static constexpr bool exceeds = true;
   static constexpr std::size_t block_queries = 4;
   static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 8;
@@ -34,8 +34,6 @@ struct Products {
   static Query query(const std::int8_t* from) noexcept {
     return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from))};
   }
-
-  static Row one() noexcept { return {_mm256_set1_epi8(1)}; }
 
   static Sum add(Sum sum, Row row, Query query) noexcept {
     return {_mm256_dpbusd_avx_epi32(sum.lanes, row.shifted, query.values)};

@@ -8,7 +8,7 @@
 //   Sum, Row, Query: registers; Sum zero(); Row row(from); Query query(from), a step each
 //   Sum add(Sum, Row, Query)
 //   totals(sums of sums_together, out), modulo 2^32
-//   uint32 row_offset: what `row` makes every value larger by; where it does, Row one()
+//   exceeds: whether sums are more than those of the products: by what a row of zeros gives
 //   block_queries, block_rows: queries by rows, as many sums side by side as
 //   there are registers; column_rows: the same, rows of one query }
 namespace seqloop::kernels {
@@ -18,33 +18,6 @@ inline constexpr std::size_t near_bytes = std::size_t{32} << 10U;
 
 /// Bytes of rows that stay in the next cache while queries pass by.
 inline constexpr std::size_t middle_bytes = std::size_t{256} << 10U;
-
-/// What is too much in a sum of products. Unsigned, because only the difference must fit 32 bits.
-template <class Products>
-std::uint32_t excess(const std::int8_t* query, std::size_t size) noexcept {
-  if constexpr (Products::row_offset == 0) {
-    return 0;
-  } else {
-    typename Products::Sum sums[sums_together];
-    for (auto& sum : sums) sum = Products::zero();
-    std::size_t i = 0;
-    for (; i + sums_together * Products::step <= size; i += sums_together * Products::step) {
-      for (std::size_t s = 0; s < sums_together; ++s) {
-        sums[s] = Products::add(sums[s], Products::one(),
-                                Products::query(query + i + s * Products::step));
-      }
-    }
-    for (; i + Products::step <= size; i += Products::step) {
-      sums[0] = Products::add(sums[0], Products::one(), Products::query(query + i));
-    }
-    std::uint32_t totals[sums_together];
-    Products::totals(sums, totals);
-    std::uint32_t total = 0;
-    for (const std::uint32_t part : totals) total += part;
-    for (; i < size; ++i) total += static_cast<std::uint32_t>(query[i]);
-    return total * Products::row_offset;
-  }
-}
 
 /// Adds the products of one block; each step to another sum, so that none waits for the one before.
 template <class Products>
@@ -57,24 +30,44 @@ void add_block(typename Products::Sum (&sums)[sums_together], const std::int8_t*
   }
 }
 
+/// Adds up products, with what is too much. Unsigned, because only the difference must fit 32 bits.
+/// @param row_step from one block of the row to the next
 template <class Products>
-std::int32_t dot(const std::int8_t* a, const std::int8_t* b, std::size_t size) noexcept {
+std::uint32_t total_of(const std::int8_t* row, std::size_t row_step, const std::int8_t* query,
+                       std::size_t size) noexcept {
   typename Products::Sum sums[sums_together];
   for (auto& sum : sums) sum = Products::zero();
   std::size_t first = 0;
-  for (; first + stored_line <= size; first += stored_line) {
-    add_block<Products>(sums, a + first, b + first);
+  for (; first + stored_line <= size; first += stored_line, row += row_step) {
+    add_block<Products>(sums, row, query + first);
   }
   if (first < size) {
-    const LastBlock<Products, std::int8_t> last_a(a + first, size - first);
-    const LastBlock<Products, std::int8_t> last_b(b + first, size - first);
-    add_block<Products>(sums, last_a.values, last_b.values);
+    const LastBlock<Products, std::int8_t> last_row(row, size - first);
+    const LastBlock<Products, std::int8_t> last_query(query + first, size - first);
+    add_block<Products>(sums, last_row.values, last_query.values);
   }
   std::uint32_t totals[sums_together];
   Products::totals(sums, totals);
   std::uint32_t total = 0;
   for (const std::uint32_t part : totals) total += part;
-  return static_cast<std::int32_t>(total - excess<Products>(b, size));
+  return total;
+}
+
+/// What is too much in the sums of a query.
+template <class Products>
+std::uint32_t excess(const std::int8_t* query, std::size_t size) noexcept {
+  if constexpr (Products::exceeds) {
+    const LastBlock<Products, std::int8_t> zeros(query, 0);
+    return total_of<Products>(zeros.values, 0, query, size);
+  } else {
+    return 0;
+  }
+}
+
+template <class Products>
+std::int32_t dot(const std::int8_t* a, const std::int8_t* b, std::size_t size) noexcept {
+  return static_cast<std::int32_t>(total_of<Products>(a, stored_line, b, size) -
+                                   excess<Products>(b, size));
 }
 
 /// What a block of dots is made from: vectors `stride` bytes apart, of which `length` count; and

@@ -61,5 +61,93 @@ void squares(const float* query, const float* rows, std::size_t stride, std::siz
   for (; row < count; ++row) squares_abreast<1>(query, rows + row * stride, stride, sums + row);
 }
 
+// Rows whose sums of lanes are added up together.
+constexpr std::size_t tile_rows = 4;
+
+/// Some queries by some rows, a register of sums each; vectors `stride` values apart.
+struct SquaresTile {
+  const float* queries;
+  const float* rows;
+  std::size_t stride;
+  double* sums;
+  std::size_t out_stride;
+};
+
+/// Adds what a part of the vectors differs by, at most `float_block` long.
+/// @param length a whole number of lanes
+template <std::size_t queries>
+[[gnu::noinline]] void add_squares(const SquaresTile& tile, std::size_t length) noexcept {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::CappedTag<float, lanes> some;
+  const hn::FixedTag<float, tile_rows> four;
+  const hn::FixedTag<double, tile_rows> wide;
+  constexpr std::size_t width = hn::MaxLanes(some);
+  for (std::size_t part = 0; part < lanes; part += width) {
+    hn::Vec<decltype(some)> partial[queries][tile_rows];
+#pragma GCC unroll 16
+    for (auto& of_query : partial) {
+#pragma GCC unroll 16
+      for (auto& of_pair : of_query) of_pair = hn::Zero(some);
+    }
+    for (std::size_t i = part; i < length; i += lanes) {
+      hn::Vec<decltype(some)> row[tile_rows];
+#pragma GCC unroll 16
+      for (std::size_t r = 0; r < tile_rows; ++r) {
+        row[r] = hn::LoadU(some, tile.rows + r * tile.stride + i);
+      }
+#pragma GCC unroll 16
+      for (std::size_t q = 0; q < queries; ++q) {
+        const auto query = hn::LoadU(some, tile.queries + q * tile.stride + i);
+#pragma GCC unroll 16
+        for (std::size_t r = 0; r < tile_rows; ++r) {
+          const auto differ = hn::Sub(query, row[r]);
+          partial[q][r] = hn::Add(partial[q][r], hn::Mul(differ, differ));
+        }
+      }
+    }
+#pragma GCC unroll 16
+    for (std::size_t q = 0; q < queries; ++q) {
+      float values[width * tile_rows];
+      hn::StoreInterleaved4(partial[q][0], partial[q][1], partial[q][2], partial[q][3], some,
+                            values);
+      double* const to = tile.sums + q * tile.out_stride;
+      auto sums = hn::LoadU(wide, to);
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        sums = hn::Add(sums, hn::PromoteTo(wide, hn::LoadU(four, values + lane * tile_rows)));
+      }
+      hn::StoreU(sums, wide, to);
+    }
+  }
+}
+
+void squares_block(const float* queries, std::size_t queries_count, const float* rows,
+                   std::size_t stride, std::size_t count, double* sums,
+                   std::size_t out_stride) noexcept {
+  namespace hn = hwy::HWY_NAMESPACE;
+  // As many sums as there are registers, besides the rows, a query and what they differ by.
+  constexpr std::size_t abreast = hn::MaxLanes(hn::CappedTag<float, lanes>()) == lanes ? 4 : 2;
+  const std::size_t whole_queries = queries_count / abreast * abreast;
+  const std::size_t whole_rows = count / tile_rows * tile_rows;
+  for (std::size_t q = 0; q < whole_queries; ++q) {
+    for (std::size_t r = 0; r < whole_rows; ++r) sums[q * out_stride + r] = 0.0;
+  }
+  for (std::size_t first = 0; first < stride; first += float_block) {
+    const std::size_t length = stride - first < float_block ? stride - first : float_block;
+    // Some rows stay in the nearest cache while the queries pass by.
+    for (std::size_t r = 0; r < whole_rows; r += tile_rows) {
+      for (std::size_t q = 0; q < whole_queries; q += abreast) {
+        add_squares<abreast>({queries + q * stride + first, rows + r * stride + first, stride,
+                              sums + q * out_stride + r, out_stride},
+                             length);
+      }
+    }
+  }
+  for (std::size_t q = 0; q < queries_count; ++q) {
+    const std::size_t done = q < whole_queries ? whole_rows : 0;
+    squares(queries + q * stride, rows + done * stride, stride, count - done,
+            sums + q * out_stride + done);
+  }
+}
+
 }  // namespace
 }  // namespace seqloop::kernels

@@ -46,7 +46,7 @@ struct HighwayProducts {
   using Row = hn::Vec<Middle>;
   using Query = hn::Vec<Middle>;
   static constexpr std::size_t step = hn::MaxLanes(Middle());
-  static constexpr std::uint32_t row_offset = 0;
+  static constexpr bool exceeds = false;
   static constexpr std::size_t block_queries = 4;
   static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 4;

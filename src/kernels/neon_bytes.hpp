@@ -16,7 +16,7 @@ struct NeonBytes {
   using Row = int8x16_t;
   using Query = int8x16_t;
   static constexpr std::size_t step = 16;
-  static constexpr std::uint32_t row_offset = 0;
+  static constexpr bool exceeds = false;
   static constexpr std::size_t block_rows = 2;
 
   static Sum zero() noexcept { return vdupq_n_s32(0); }

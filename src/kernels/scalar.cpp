@@ -12,7 +12,7 @@ struct Products {
   using Row = const std::int8_t*;
   using Query = const std::int8_t*;
   static constexpr std::size_t step = 64;
-  static constexpr std::uint32_t row_offset = 0;
+  static constexpr bool exceeds = false;
   static constexpr std::size_t block_queries = 1;
   static constexpr std::size_t block_rows = 2;
   static constexpr std::size_t column_rows = 4;

@@ -45,7 +45,7 @@ struct Vnni512Products {
     __m512i values;
   };
   static constexpr std::size_t step = 64;
-  static constexpr std::uint32_t row_offset = 128;
+  static constexpr bool exceeds = true;
   static constexpr std::size_t block_queries = 8;
   static constexpr std::size_t block_rows = 3;
   static constexpr std::size_t column_rows = 8;
@@ -62,8 +62,6 @@ struct Vnni512Products {
     __asm__("" : "+v"(values));
     return {values};
   }
-
-  static Row one() noexcept { return {_mm512_set1_epi8(1)}; }
 
   static Sum add(Sum sum, Row row, Query query) noexcept {
     return {__v16si(_mm512_dpbusd_epi32(__m512i(sum.lanes), row.shifted, query.values))};

@@ -70,7 +70,7 @@ class Map : public testing::Test {
 TEST(RowChecksum, IsZlibs) {
   const std::string digits = "123456789";
   EXPECT_EQ(sqlite::crc32(std::as_bytes(std::span(digits))), 0xCBF43926U);
-  for (const std::size_t size : {0U, 1U, 15U, 16U, 17U, 63U, 200U}) {
+  for (const std::size_t size : {0U, 1U, 15U, 16U, 17U, 63U, 64U, 65U, 127U, 128U, 200U, 1000U}) {
     const std::vector<std::byte> bytes = test::sample_place(7, size);
     std::uint32_t naive = 0xFFFFFFFFU;
     for (const std::byte byte : bytes) {

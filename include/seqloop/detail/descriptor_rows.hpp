@@ -83,9 +83,12 @@ class DescriptorRows {
   void compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
                std::span<std::uint16_t> out) const noexcept;
 
-  /// The same of several descriptors, reading each row once for all of them; `int8` alone.
+  /// The same of several descriptors, reading each row once for all of them; `float32` by
+  /// Euclid, and `int8`.
   /// @param query rows of the queries from this one on; behind their last follows their first
   /// @param out   one column a query, at most `MatcherConfig::most_frames_at_once`
+  void compare(const DescriptorRows& queries, std::size_t query,
+               std::span<const std::span<float>> out) const noexcept;
   void compare(const DescriptorRows& queries, std::size_t query,
                std::span<const std::span<std::uint16_t>> out) const noexcept;
 

@@ -38,7 +38,8 @@ class DifferenceSlices {
                    std::size_t last) noexcept;
 
   /// Computes the whole columns of the newest frames, which nothing was computed of yet; faster
-  /// than one by one where that is possible: exhaustive search by `int8` in a map that is in order.
+  /// than one by one: exhaustive search in a map that is in order, not enhanced, by `int8` or by
+  /// Euclid's distances of floats.
   /// @param count frames, at most `MatcherConfig::frames_at_once`. Work: count * N distances.
   void fill_newest(const PlaceMap& map, std::size_t count) noexcept;
 

@@ -21,6 +21,18 @@ struct FloatColumn {
   /// Work: count * stride subtractions and MACs; reads the rows once, front to back.
   void (*squares)(const float* query, const float* rows, std::size_t stride, std::size_t count,
                   double* sums) noexcept;
+
+  /// The same of several vectors, several times faster than one by one: what is read of a row is
+  /// used for some of them.
+  /// @param queries       [queries_count, stride]   @param queries_count any
+  /// @param sums          [queries_count, out_stride] written: sums[q * out_stride + r] is of query
+  ///                      q and row r; nothing behind the first `count` of each
+  /// @param out_stride    at least count
+  /// Work: queries_count times that of `squares`. Reads the rows once as long as `count` of them
+  /// and the queries, 4 KB of each at a time, fit the second cache.
+  void (*squares_block)(const float* queries, std::size_t queries_count, const float* rows,
+                        std::size_t stride, std::size_t count, double* sums,
+                        std::size_t out_stride) noexcept;
 };
 
 /// All variants that this library was built with, the best first, the one in plain C++ last. Not

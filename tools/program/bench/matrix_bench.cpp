@@ -2,9 +2,11 @@
 #include "program/bench/matrix_bench.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "program/process/available_memory.hpp"
+#include "seqloop/detail/float_columns.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
@@ -15,8 +17,9 @@ namespace {
 
 constexpr std::size_t frames_at_once = MatcherConfig::most_frames_at_once;
 
-MatcherConfig config_of(std::size_t ds) {
+MatcherConfig config_of(std::size_t ds, Arithmetic arithmetic) {
   MatcherConfig config;
+  config.arithmetic = arithmetic;
   config.candidates = Candidates::all;
   config.sequence_length = ds;
   config.frames_at_once = frames_at_once;
@@ -54,6 +57,35 @@ PlaceMap map_of(const Drive& drive, const MatcherConfig& config, const Capacity&
   return map;
 }
 
+/// A map and who matches with it.
+struct Matched {
+  Matched(const Drive& reference, const MatcherConfig& config, const Capacity& size)
+      : map(map_of(reference, config, size)), detector(config, map) {}
+
+  [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
+                                                  const Capacity& size) {
+    return PlaceMap::bytes_needed(config, size) + Detector::bytes_needed(config, size);
+  }
+
+  PlaceMap map;
+  Detector detector;
+};
+
+/// All differences of floats, squared: what a product of matrices is compared with.
+void compare_all(const Drive& query, const Drive& reference) {
+  constexpr std::size_t abreast = 96;
+  const FloatColumn& kernels = best_float_column();
+  const std::size_t stride = query.values().size() / query.frames();
+  std::vector<double> sums(frames_at_once * abreast);
+  for (std::size_t first = 0; first < query.frames(); first += frames_at_once) {
+    const std::size_t count = std::min(frames_at_once, query.frames() - first);
+    for (std::size_t row = 0; row < reference.frames(); row += abreast) {
+      kernels.squares_block(query.frame(first).data(), count, reference.frame(row).data(), stride,
+                            std::min(abreast, reference.frames() - row), sums.data(), abreast);
+    }
+  }
+}
+
 void match_all(Detector& detector, const Drive& drive) {
   std::vector<std::span<const float>> frames(frames_at_once);
   std::vector<FrameReport> reports(frames_at_once);
@@ -68,22 +100,29 @@ void match_all(Detector& detector, const Drive& drive) {
 
 void time_matrix(const Capacity& size, std::size_t ds, const PeerMatrices& peers,
                  std::size_t rounds, std::vector<Contender>& timed) {
-  const MatcherConfig config = config_of(ds);
+  const MatcherConfig small = config_of(ds, Arithmetic::int8);
+  const MatcherConfig exact = config_of(ds, Arithmetic::float32);
   const std::uint64_t drive_bytes =
       std::uint64_t{size.places} * padded_size(size.descriptor_size) * sizeof(float);
-  const std::uint64_t bytes = PlaceMap::bytes_needed(config, size) +
-                              Detector::bytes_needed(config, size) + 2 * drive_bytes +
+  const std::uint64_t bytes = Matched::bytes_needed(small, size) +
+                              Matched::bytes_needed(exact, size) + 2 * drive_bytes +
                               std::uint64_t{size.places} * size.places * sizeof(float);
   if (!fits_memory(bytes, "matrix")) return;
   const Drive reference(size, 0.0F);
   const Drive query(size, 1.0F);
-  PlaceMap map = map_of(reference, config, size);
-  Detector detector(config, map);
+  Matched by_int8(reference, small, size);
+  Matched by_float(reference, exact, size);
   const std::size_t goes = (size.places + frames_at_once - 1) / frames_at_once;
   std::vector<Contender> contenders;
-  contenders.push_back({"matrix", "seqloop-int8-with-matches", size.places, size.descriptor_size,
-                        goes * size.places * padded_bytes(size.descriptor_size),
-                        [&] { match_all(detector, query); }});
+  const auto add = [&](const char* by, std::uint64_t bytes_read, std::function<void()> round) {
+    contenders.push_back(
+        {"matrix", by, size.places, size.descriptor_size, bytes_read, std::move(round)});
+  };
+  add("seqloop-int8-with-matches", goes * size.places * padded_bytes(size.descriptor_size),
+      [&] { match_all(by_int8.detector, query); });
+  add("seqloop-float-with-matches", goes * drive_bytes,
+      [&] { match_all(by_float.detector, query); });
+  add("seqloop-float", goes * drive_bytes, [&] { compare_all(query, reference); });
   if (peers) {
     for (Contender& peer : peers({size, query.values(), reference.values()})) {
       contenders.push_back(std::move(peer));

@@ -123,6 +123,7 @@ void time_opening(const Capacity& size, std::size_t rounds, std::vector<Contende
   const auto open_as_program = [&] {
     const std::unique_ptr<LastingMap> saved = open(file, size.descriptor_size, true);
     saved->load(opened.emplace(saved->capacity(0)).map);
+    opened->memory.wait();
   };
   const auto forget = [&] {
     opened.reset();

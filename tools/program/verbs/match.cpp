@@ -93,7 +93,7 @@ void match(const MatchSettings& settings, Faults faults) {
       lasting ? lasting->capacity(query->rows)
               : Capacity{reference ? reference->rows : query->rows, query->columns};
   suit_slice(config, settings.matcher, capacity.places);
-  const live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
+  live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
   PlaceMap map(config, capacity, memory.span());
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
@@ -103,7 +103,9 @@ void match(const MatchSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (lasting) lasting->load(map);
-  const live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
+  live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
+  memory.wait();
+  working_memory.wait();
   Detector detector(config, map, working_memory.span());
   if (lasting) lasting->begin(map, config, settings.matcher.method);
   Progress progress("matching", query->rows);

@@ -119,7 +119,7 @@ void run(const RunSettings& settings, Faults faults) {
   }
 
   // Start-up: the map, then every path once, before the first frame counts.
-  const live::TouchedMemory memory = with_room(setup, [&] {
+  live::TouchedMemory memory = with_room(setup, [&] {
     return live::TouchedMemory(PlaceMap::bytes_needed(setup.config, setup.capacity()));
   });
   PlaceMap map(setup.config, setup.capacity(), memory.span());
@@ -135,9 +135,11 @@ void run(const RunSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (setup.map) setup.map->load(map);
-  const live::TouchedMemory working_memory = with_room(setup, [&] {
+  live::TouchedMemory working_memory = with_room(setup, [&] {
     return live::TouchedMemory(Detector::bytes_needed(setup.config, setup.capacity()));
   });
+  memory.wait();
+  working_memory.wait();
   Detector detector(setup.config, map, working_memory.span());
   RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
   OverloadWatch overload(setup.overload);
