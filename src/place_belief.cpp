@@ -29,8 +29,6 @@ constexpr double right_gain = 1.25;  // by novelty: a row that gains less may no
 constexpr std::size_t born_most = 16;
 constexpr std::size_t old_most = PlaceBelief::most - born_most;
 
-constexpr double close_bits = DescriptorRows::close_words * 64.0;
-
 bool used(const MatcherConfig& config) { return config.decision == Decision::probability; }
 
 }  // namespace
@@ -157,7 +155,7 @@ double PlaceBelief::share(const SceneView& view, std::uint64_t frame, std::size_
   ++sketches_;
   return view.map->rows().look_closely(view.queries->rows(), view.queries->row_of(frame),
                                        view.map->order().slot(row)) /
-         close_bits;
+         DescriptorRows::close_bits;
 }
 
 void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t least_rows = 20;
 
 constexpr double scanned_bits = DescriptorRows::scanned_words * 64.0;
-constexpr double close_bits = DescriptorRows::close_words * 64.0;
 
 /// As `Scene` has them.
 struct News {
@@ -36,7 +35,7 @@ News news_of(const SceneView& view, double mean, std::size_t& sketches) {
     ++sketches;
     const double d = chord(queries.look_closely(queries, view.queries->row_of(view.newest),
                                                 view.queries->row_of(view.newest - back)) /
-                           close_bits);
+                           DescriptorRows::close_bits);
     return d * d;
   };
   const double before = squared(1);
@@ -96,8 +95,8 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
   }
   constexpr double above = 0.55;
   const News news = news_of(view, mean, sketches);
-  return Scene{mean, std::sqrt(spread + chance / close_bits), logarithm(exponentials / n) + above,
-               news.change, news.novelty};
+  return Scene{mean, std::sqrt(spread + chance / DescriptorRows::close_bits),
+               logarithm(exponentials / n) + above, news.change, news.novelty};
 }
 
 }  // namespace seqloop

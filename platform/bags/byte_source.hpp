@@ -8,6 +8,9 @@
 
 namespace seqloop::bags {
 
+/// No message, and nothing else that a bag holds in one piece, has more.
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30U;
+
 /// Port: bytes that can be read from any place. A file, and in tests memory.
 class ByteSource {
  public:

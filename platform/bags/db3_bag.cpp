@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "bags/byte_source.hpp"
+
 namespace seqloop::bags {
 namespace {
 
@@ -20,8 +22,6 @@ struct Close {
 };
 using Database = std::unique_ptr<sqlite3, Close>;
 using Statement = std::unique_ptr<sqlite3_stmt, Close>;
-
-constexpr int most_bytes = 1 << 30;  // of a message, and of anything else in the file
 
 std::string text_at(sqlite3_stmt* row, int column) {
   const void* text = sqlite3_column_text(row, column);
@@ -85,7 +85,7 @@ class Db3Bag : public Bag {
     // A file from somebody else: its own views, triggers and functions are not run.
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, most_bytes);
+    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(most_bytes));
     read_facts();
   }
 

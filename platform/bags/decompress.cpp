@@ -6,6 +6,8 @@
 #include <memory>
 #include <new>
 
+#include "bags/byte_source.hpp"
+
 #if SEQLOOP_LZ4
 #include <lz4frame.h>
 #endif
@@ -18,7 +20,6 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30U;
 constexpr std::string_view damaged = "a chunk cannot be unpacked";
 constexpr std::string_view cut_off = "a chunk is cut off";
 constexpr std::string_view another_size = "a chunk unpacks to another size than it says";

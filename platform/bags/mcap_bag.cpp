@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "bags/byte_source.hpp"
 #include "bags/decompress.hpp"
 #include "bags/mcap_records.hpp"
 #include "seqloop/fault.hpp"
@@ -18,7 +19,6 @@ namespace {
 using mcap::Bytes;
 using mcap::Opcode;
 
-constexpr std::uint64_t most_record_bytes = std::uint64_t{1} << 30U;
 constexpr std::uint64_t most_summary_bytes = std::uint64_t{1} << 28U;
 
 std::int64_t nanoseconds(std::uint64_t time) {
@@ -139,7 +139,7 @@ class Walk {
       place_ = start;
       return end("it is cut off");
     } else if (opcode == Opcode::schema || opcode == Opcode::channel || opcode == Opcode::message) {
-      if (length > most_record_bytes) {
+      if (length > most_bytes) {
         chunk_fault_ = "a message has more than 1 GiB";
       } else if (fetch(content, length)) {
         record = {opcode, packed_};
@@ -152,7 +152,7 @@ class Walk {
 
   /// @param whole otherwise the file ends within it
   void open_chunk(std::uint64_t place, std::uint64_t length, bool whole) {
-    if (length > most_record_bytes) {
+    if (length > most_bytes) {
       chunk_fault_ = "a chunk has more than 1 GiB";
       return;
     }

@@ -49,4 +49,7 @@ inline Qos make_qos(const TopicType& type, bool reliable, std::int32_t depth) {
   return qos;
 }
 
+/// For members of a message that is only written, never changed: C has no way to say so.
+inline char* text(const std::string& words) { return const_cast<char*>(words.c_str()); }
+
 }  // namespace seqloop::dds

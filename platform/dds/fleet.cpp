@@ -42,9 +42,7 @@ Qos partition_qos(const std::string& name) {
   return qos;
 }
 
-// What is written is only read; C has no way to say so of a member.
-char* text(const std::string& words) { return const_cast<char*>(words.c_str()); }
-
+/// As text() in entity.hpp.
 dds_sequence_double numbers(std::span<const double> values) {
   dds_sequence_double sequence{};
   sequence._length = sequence._maximum = static_cast<std::uint32_t>(values.size());

@@ -13,9 +13,6 @@
 namespace seqloop::dds {
 namespace {
 
-// What is written is only read; C has no way to say so of a member.
-char* text(const std::string& words) { return const_cast<char*>(words.c_str()); }
-
 builtin_interfaces_msg_dds__Time_ time_of(std::int64_t time_ns) {
   constexpr std::int64_t second = 1'000'000'000;
   return {static_cast<std::int32_t>(time_ns / second),

@@ -24,8 +24,6 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{64} * 1024;
 
-std::string reason(int error) { return std::generic_category().message(error); }
-
 /// Nothing is ever created or replaced in the folders in which the kernel shows itself.
 bool in_system_folder(const std::filesystem::path& path) {
   std::error_code error;

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason(int error) { return std::generic_category().message(error); }
-
 bool on_other_devices(const fs::path& one, const fs::path& other) {
   struct stat first {};
   struct stat second {};

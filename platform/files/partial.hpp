@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 namespace seqloop::files {
 
@@ -18,5 +20,10 @@ struct Partial {
 /// Makes one, after removing those of the same output that killed processes left.
 /// @return no descriptor where it cannot be made; `errno` says why
 [[nodiscard]] Partial make_partial(const std::filesystem::path& output, PartialKind kind);
+
+/// What an errno means, in words.
+[[nodiscard]] inline std::string reason(int error) {
+  return std::generic_category().message(error);
+}
 
 }  // namespace seqloop::files

@@ -11,7 +11,7 @@ namespace seqloop::http {
 namespace {
 
 /// @param family AF_INET or AF_INET6
-bool is_ip(std::string_view host, int family) noexcept {
+bool is_ip_of(int family, std::string_view host) noexcept {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (host.size() >= text.size()) return false;
   host.copy(text.data(), host.size());
@@ -21,10 +21,13 @@ bool is_ip(std::string_view host, int family) noexcept {
 
 }  // namespace
 
-bool is_ip(std::string_view host) noexcept { return is_ip(host, AF_INET) || is_ip(host, AF_INET6); }
+bool is_ip(std::string_view host) noexcept {
+  return is_ip_of(AF_INET, host) || is_ip_of(AF_INET6, host);
+}
 
 bool is_loopback(std::string_view host) noexcept {
-  return host == "localhost" || host == "::1" || (host.starts_with("127.") && is_ip(host, AF_INET));
+  return host == "localhost" || host == "::1" ||
+         (host.starts_with("127.") && is_ip_of(AF_INET, host));
 }
 
 Address parse_address(std::string_view text) {
@@ -44,7 +47,7 @@ Address parse_address(std::string_view text) {
   const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (brackets) host = host.substr(1, host.size() - 2);
   // A name could lead anywhere, and elsewhere tomorrow.
-  if (host != "localhost" && !is_ip(host, brackets ? AF_INET6 : AF_INET)) {
+  if (host != "localhost" && !is_ip_of(brackets ? AF_INET6 : AF_INET, host)) {
     refuse("has no IP address in front of its port; IPv6 stands in brackets");
   }
   address.host = host;

@@ -10,13 +10,13 @@
 #include "linux/capture_start.hpp"
 #include "linux/error_text.hpp"
 #include "linux/refusal_text.hpp"
+#include "linux/time_step.hpp"
 
 namespace seqloop::live {
 namespace {
 
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr Nanoseconds time_step = Milliseconds(50);
 constexpr Nanoseconds short_pause =
     Milliseconds(5);  // where a driver says that there is something, and lies
 constexpr Nanoseconds busy_pause = Milliseconds(100);  // until another program is asked for again

@@ -5,12 +5,11 @@
 #include <system_error>
 #include <utility>
 
+#include "linux/time_step.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::live {
 namespace {
-
-constexpr Nanoseconds time_step = std::chrono::milliseconds(50);  // between two looks at `stop`
 
 bool is_frame(const Captured& captured) noexcept {
   return captured.what == Capture::frame || captured.what == Capture::bad_frame;

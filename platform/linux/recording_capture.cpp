@@ -5,10 +5,10 @@
 #include <new>
 #include <utility>
 
+#include "linux/time_step.hpp"
+
 namespace seqloop::live {
 namespace {
-
-constexpr Nanoseconds time_step = std::chrono::milliseconds(50);
 
 std::size_t pixel_bytes(PixelFormat format) noexcept { return format == PixelFormat::bgr8 ? 3 : 1; }
 

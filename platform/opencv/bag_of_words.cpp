@@ -19,8 +19,8 @@ namespace seqloop::opencv {
 namespace {
 
 constexpr int features_a_picture = 500;
-constexpr int bytes = 32;  // of an ORB feature
-constexpr int bits = 8 * bytes;
+constexpr int feature_bytes = 32;  // of an ORB feature
+constexpr int bits = 8 * feature_bytes;
 constexpr std::uint64_t seed = 1;
 
 /// What k-means draws comes from this thread's generator, which is left as it was.
@@ -90,7 +90,7 @@ cv::Mat learn_words(const cv::Mat& values, int words) {
   cv::Mat labels;
   cv::Mat centres;
   cv::kmeans(values, words, labels, until, 1, cv::KMEANS_PP_CENTERS, centres);
-  cv::Mat vocabulary = cv::Mat::zeros(words, bytes, CV_8U);
+  cv::Mat vocabulary = cv::Mat::zeros(words, feature_bytes, CV_8U);
   for (int word = 0; word < words; ++word)
     for (int bit = 0; bit < bits; ++bit)
       if (centres.at<float>(word, bit) > 0.5F)

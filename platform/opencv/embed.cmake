@@ -13,12 +13,12 @@ file(WRITE "${OUTPUT}" "// Made by embed.cmake; not to be edited.
 namespace seqloop::opencv {
 namespace {
 
-const unsigned char bytes[] = {
+constexpr unsigned char model_file[] = {
 ${bytes}};
 
 }  // namespace
 
-std::span<const unsigned char> builtin_model() noexcept { return bytes; }
+std::span<const unsigned char> builtin_model() noexcept { return model_file; }
 
 }  // namespace seqloop::opencv
 ")

@@ -75,10 +75,10 @@ bool split(Bytes payload, std::vector<RawValue>& columns) {
 
 }  // namespace
 
-RawRows::RawRows(const std::filesystem::path& path, std::size_t page_size)
+RawRows::RawRows(const std::filesystem::path& path, std::size_t page_bytes)
     : file_(path, std::ios::binary),
-      size_(page_size),
-      pages_(std::filesystem::file_size(path) / page_size) {}
+      size_(page_bytes),
+      pages_(std::filesystem::file_size(path) / page_bytes) {}
 
 bool RawRows::load(std::uint32_t number, std::vector<std::byte>& page) {
   if (number == 0 || number > pages_) return false;

@@ -35,8 +35,8 @@ class RawRows {
   using Take = std::function<void(const RawPlace& place, std::int64_t rowid,
                                   const std::vector<RawValue>& columns)>;
 
-  /// @param page_size 512 .. 65536, a power of two
-  RawRows(const std::filesystem::path& path, std::size_t page_size);
+  /// @param page_bytes 512 .. 65536, a power of two
+  RawRows(const std::filesystem::path& path, std::size_t page_bytes);
 
   /// Hands over every row of at most 16 columns, page by page.
   void each(const Take& take);

@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
-constexpr std::uint16_t port = 8321;
+constexpr std::uint16_t served_port = 8321;
 constexpr std::uint64_t frames_a_second = 30;
 constexpr std::uint64_t seconds = 20;
 constexpr std::uint64_t seconds_to_begin = 5;  // connections come up, pages ask for the first time
@@ -92,12 +92,12 @@ class OtherThreads {
 }  // namespace
 
 ServingCost count_serving(std::size_t clients) {
-  WebClients crowd(clients, port);
+  WebClients crowd(clients, served_port);
   const InstructionCounter own;
   const OtherThreads server(Where::program);
   const OtherThreads server_and_kernel(Where::program_and_kernel);
   program::ServeSettings settings;
-  settings.address = "127.0.0.1:" + std::to_string(port);
+  settings.address = "127.0.0.1:" + std::to_string(served_port);
   program::Serving serving(settings, {{"source", "/dev/video0"}, {"method", "o-seqcnnslam"}}, false,
                            nullptr);
   ShownLoop loop(serving.watch());

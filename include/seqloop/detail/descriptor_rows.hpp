@@ -41,6 +41,7 @@ class DescriptorRows {
   /// Words of a sketch that relocalising scans the map by, and those that it looks closely by.
   static constexpr std::size_t scanned_words = 4;
   static constexpr std::size_t close_words = 16;
+  static constexpr double close_bits = close_words * 64.0;
 
   /// Allocates: from the arena only.
   DescriptorRows(Arena& arena, const RowNames& names, const DescriptorForm& form, std::size_t rows);

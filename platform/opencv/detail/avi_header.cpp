@@ -9,8 +9,6 @@
 namespace seqloop::opencv {
 namespace {
 
-constexpr std::size_t chunk_header = 8;  // name, size of the content
-
 bool is_motion_jpeg(Bytes bytes, std::size_t place) {
   return has(bytes, place, "MJPG") || has(bytes, place, "mjpg");
 }
@@ -41,16 +39,15 @@ void read_format(Bytes head, std::size_t content, AviHeader& video) {
 }  // namespace
 
 std::optional<AviHeader> read_avi_header(Bytes head) noexcept {
-  constexpr std::size_t list_header = chunk_header + 4;  // and the list's own name
   if (!has(head, 0, "RIFF") || !has(head, 8, "AVI ")) return std::nullopt;
   std::optional<AviHeader> video;
   std::uint32_t frame_time_us = 0;
   int streams = 0;
-  for (std::size_t place = list_header; place + list_header <= head.size();) {
-    const std::size_t content = place + chunk_header;
+  for (std::size_t place = avi_list_header; place + avi_list_header <= head.size();) {
+    const std::size_t content = place + avi_chunk_header;
     if (has(head, place, "LIST")) {  // its chunks are looked at
       if (has(head, content, "movi")) break;
-      place += list_header;
+      place += avi_list_header;
       continue;
     }
     if (has(head, place, "avih")) frame_time_us = little_endian(head, content);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 
 namespace seqloop::opencv {
+
+constexpr std::size_t avi_chunk_header = 8;  ///< bytes of a chunk's name and size
+constexpr std::size_t avi_list_header = 12;  ///< and of a list's own name
 
 /// What an AVI file's headers say of its first video.
 struct AviHeader {

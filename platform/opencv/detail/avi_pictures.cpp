@@ -11,9 +11,6 @@
 namespace seqloop::opencv {
 namespace {
 
-constexpr std::size_t chunk_header = 8;  // name, size of the content
-constexpr std::size_t list_header = 12;  // and the list's own name
-
 /// Whether a chunk holds a picture of that stream: "00dc", "00db".
 bool is_picture(Bytes header, int stream) {
   return header[0] == '0' + stream / 10 && header[1] == '0' + stream % 10 && header[2] == 'd' &&
@@ -38,16 +35,16 @@ AviPictures::AviPictures(const std::filesystem::path& file, const AviHeader& hea
 }
 
 bool AviPictures::next(std::vector<std::uint8_t>& jpeg) {
-  std::array<std::uint8_t, list_header> header{};
-  while (size_ - place_ >= chunk_header && read(bytes_, place_, std::span(header).first<8>())) {
+  std::array<std::uint8_t, avi_list_header> header{};
+  while (size_ - place_ >= avi_chunk_header && read(bytes_, place_, std::span(header).first<8>())) {
     const std::uint32_t size = little_endian(header, 4);
-    const std::uint64_t content = place_ + chunk_header;
+    const std::uint64_t content = place_ + avi_chunk_header;
     // Where pictures lie: in the lists "movi" and "rec ", of this part of the file or a later one.
     if (has(header, 0, "RIFF") || has(header, 0, "LIST")) {
       const auto list = std::span(header).last<4>();
       if (size_ - content < list.size() || !read(bytes_, content, list)) return false;
-      if (header[0] == 'R' || has(header, chunk_header, "movi") ||
-          has(header, chunk_header, "rec ")) {
+      if (header[0] == 'R' || has(header, avi_chunk_header, "movi") ||
+          has(header, avi_chunk_header, "rec ")) {
         place_ = content + list.size();
         continue;
       }

@@ -11,12 +11,13 @@
 namespace seqloop::live {
 namespace {
 
-using test::status_without_system_calls;
+using seqloop::test::status_without_system_calls;
 
 class SystemCalls : public testing::Test {
  protected:
   void SetUp() override {
-    if (const char* const why = test::system_calls_cannot_be_forbidden()) GTEST_SKIP() << why;
+    if (const char* const why = seqloop::test::system_calls_cannot_be_forbidden())
+      GTEST_SKIP() << why;
     ASSERT_EQ(status_without_system_calls([] { return true; }), 0);
   }
 };

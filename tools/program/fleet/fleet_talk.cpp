@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "program/fleet/round_time.hpp"
 #include "program/watch/background.hpp"
 
 namespace seqloop::program {
@@ -13,15 +14,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto round_time = 20ms;
 constexpr auto patience_at_end = 1s;
 
 // Places that wait for the loop; it takes 64 a frame.
 constexpr std::size_t queued = 1024;
-
-// What all places of a session have in common is said with its first place, and again with every
-// so many: who hears the newest ones alone learns it, too.
-constexpr std::uint64_t said_every = 64;
 
 // Lines for a person that nobody has read yet.
 constexpr std::size_t most_news = 64;

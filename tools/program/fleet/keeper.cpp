@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "program/fleet/place_number.hpp"
+#include "program/fleet/round_time.hpp"
 #include "program/process/say.hpp"
 
 namespace seqloop::program {
@@ -17,7 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-constexpr auto round_time = 20ms;
 constexpr auto patience = 1s;
 
 // Places that wait to be saved; more wait in DDS.
@@ -25,9 +25,6 @@ constexpr std::size_t most_waiting = 16'384;
 
 // Links of a place, on average: what many robots tell is bounded.
 constexpr std::size_t links_a_place = 8;
-
-// What all places of a session have in common is said again with every one of these.
-constexpr std::uint64_t said_every = 64;
 
 // A robot tells it from this probability on.
 constexpr double likely = 0.9;

@@ -7,14 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "program/process/milliseconds.hpp"
+
 namespace seqloop::program {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double milliseconds(Nanoseconds duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 /// JSON has no NaN and no infinity.
 template <class Number>

@@ -6,15 +6,12 @@
 
 #include "program/options/loop_options.hpp"
 #include "program/process/build_info.hpp"
+#include "program/process/milliseconds.hpp"
 
 namespace seqloop::program {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double milliseconds(Nanoseconds duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 Json stage_json(const LatencyHistogram& times) {
   Json json;

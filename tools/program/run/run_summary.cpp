@@ -6,12 +6,10 @@
 #include <chrono>
 #include <numeric>
 
+#include "program/process/milliseconds.hpp"
+
 namespace seqloop::program {
 namespace {
-
-double milliseconds(Nanoseconds duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 Nanoseconds limit_of(const Budget& budget, std::string_view name) {
   if (name == "age") return budget.age;

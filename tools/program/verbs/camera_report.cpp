@@ -8,14 +8,11 @@
 #include <numeric>
 #include <utility>
 
+#include "program/process/milliseconds.hpp"
 #include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::program {
 namespace {
-
-double milliseconds(Nanoseconds duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 std::string percentiles(const LatencyHistogram& times) {
   return fmt::format("p50 {:.2f} ms, p99 {:.2f} ms, max {:.2f} ms",

@@ -7,16 +7,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "program/process/milliseconds.hpp"
 #include "program/run/frame_json.hpp"
 
 namespace seqloop::program {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double milliseconds(Nanoseconds duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
