@@ -178,7 +178,7 @@ void DescriptorRows::sketch(std::span<const std::size_t> rows,
     sketches[i] = &sketches_[row * words_];
   }
   side_by_side(descriptors, form_.size, room);
-  sketch_together(room, sketched_values_, sketches);
+  kernels_->sketch_together(room.data(), sketched_values_.data(), words_, sketches.data());
   for (const std::size_t row : rows) copy_scanned(row);
 }
 

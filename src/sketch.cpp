@@ -9,7 +9,6 @@ namespace seqloop {
 namespace {
 
 constexpr std::size_t bits_per_word = 64;
-constexpr std::size_t values_per_word = bits_per_word * values_per_bit;
 
 // Bits that are gathered before they go to their word: as wide as the sums, which lie side by side.
 constexpr std::size_t bits_together = 16;
@@ -33,10 +32,10 @@ void alternate(const std::int8_t* one, const std::int8_t* other, std::size_t cou
 
 /// @param both [2 D, abreast] descriptors side by side, and their negatives
 template <std::size_t abreast>
-void sketches_of(const std::int8_t* both, std::span<const SketchedValue> chosen,
-                 std::span<std::uint64_t* const, abreast> out) noexcept {
-  const SketchedValue* end = chosen.data();
-  for (std::size_t word = 0; word < chosen.size() / values_per_word; ++word) {
+void sketches_of(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+                 std::uint64_t* const* out) noexcept {
+  const SketchedValue* end = chosen;
+  for (std::size_t word = 0; word < words; ++word) {
     std::array<std::uint64_t, abreast> whole{};
     for (std::size_t part = 0; part < bits_per_word; part += bits_together) {
       end += bits_together * values_per_bit;
@@ -78,8 +77,8 @@ void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_
 
 void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept {
-  const std::array<std::uint64_t*, 1> alone{out.data()};
-  sketches_of<1>(both.data(), chosen, alone);
+  std::uint64_t* const alone = out.data();
+  sketches_of<1>(both.data(), chosen.data(), out.size(), &alone);
 }
 
 void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
@@ -103,9 +102,9 @@ void side_by_side(std::span<const std::int8_t* const, sketched_together> descrip
                  [](std::int8_t value) { return static_cast<std::int8_t>(-value); });
 }
 
-void sketch_together(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
-                     std::span<std::uint64_t* const, sketched_together> out) noexcept {
-  sketches_of<sketched_together>(both.data(), chosen, out);
+void sketch_together(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+                     std::uint64_t* const* out) noexcept {
+  sketches_of<sketched_together>(both, chosen, words, out);
 }
 
 }  // namespace seqloop

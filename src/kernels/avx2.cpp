@@ -5,6 +5,7 @@
 #include "kernels/float_squares.hpp"
 #include "kernels/four_sums.hpp"
 #include "kernels/highway.hpp"
+#include "kernels/sketches.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -85,8 +86,13 @@ void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
   lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
-constinit const IntegerKernels avx2 =
-    composed_of<Products, HighwayDifferences, HighwayLanes>("avx2", &has_avx2);
+void sketch_together_avx2(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+                          std::uint64_t* const* out) noexcept {
+  sketches(both, chosen, words, out);
+}
+
+constinit const IntegerKernels avx2 = composed_of<Products, HighwayDifferences, HighwayLanes>(
+    "avx2", &has_avx2, &sketch_together_avx2);
 
 constinit const FloatColumn float_avx2{"avx2", &has_avx2, &squares, &squares_block};
 

@@ -2,6 +2,7 @@
 #include "kernels/composed_of.hpp"
 #include "kernels/float_squares.hpp"
 #include "kernels/highway.hpp"
+#include "kernels/sketches.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -28,8 +29,14 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
   lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
+void sketch_together_avx512(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+                            std::uint64_t* const* out) noexcept {
+  sketches(both, chosen, words, out);
+}
+
 constinit const IntegerKernels avx512 =
-    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512);
+    composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512,
+                                                                   &sketch_together_avx512);
 
 constinit const FloatColumn float_avx512{"avx512", &has_avx512, &squares, &squares_block};
 

@@ -55,6 +55,7 @@ struct Differences {
 constinit const IntegerKernels avx512_popcnt{
     "avx512-vnni-popcnt",         &has_avx512_popcnt,          &dot<Vnni512Products>,
     &dot_column<Vnni512Products>, &dot_block<Vnni512Products>, &hamming<Differences>,
-    &hamming_column<Differences>, &sum_diagonals_avx512,       &lowest_lines_avx512};
+    &hamming_column<Differences>, &sum_diagonals_avx512,       &lowest_lines_avx512,
+    &sketch_together_avx512};
 
 }  // namespace seqloop::kernels

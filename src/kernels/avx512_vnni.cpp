@@ -13,6 +13,7 @@ constinit const IntegerKernels avx512_vnni{"avx512-vnni",
                                            &hamming_avx512,
                                            &hamming_column_avx512,
                                            &sum_diagonals_avx512,
-                                           &lowest_lines_avx512};
+                                           &lowest_lines_avx512,
+                                           &sketch_together_avx512};
 
 }  // namespace seqloop::kernels

@@ -52,8 +52,8 @@ struct Products {
 }  // namespace
 
 constinit const IntegerKernels avx_vnni{
-    "avx-vnni",           &has_avx_vnni, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_avx2, &hamming_column_avx2, &sum_diagonals_avx2,
-    &lowest_lines_avx2};
+    "avx-vnni",           &has_avx_vnni,        &dot<Products>,       &dot_column<Products>,
+    &dot_block<Products>, &hamming_avx2,        &hamming_column_avx2, &sum_diagonals_avx2,
+    &lowest_lines_avx2,   &sketch_together_avx2};
 
 }  // namespace seqloop::kernels

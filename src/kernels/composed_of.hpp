@@ -9,7 +9,9 @@ namespace seqloop::kernels {
 
 /// A variant that has all of its own.
 template <class Products, class Differences, class Lanes>
-constexpr IntegerKernels composed_of(std::string_view name, bool (*supported)() noexcept) noexcept {
+constexpr IntegerKernels composed_of(
+    std::string_view name, bool (*supported)() noexcept,
+    decltype(IntegerKernels::sketch_together) sketch_together) noexcept {
   return {name,
           supported,
           &dot<Products>,
@@ -18,7 +20,8 @@ constexpr IntegerKernels composed_of(std::string_view name, bool (*supported)() 
           &hamming<Differences>,
           &hamming_column<Differences>,
           &sum_diagonals<Lanes>,
-          &lowest_lines<Lanes>};
+          &lowest_lines<Lanes>,
+          sketch_together};
 }
 
 }  // namespace seqloop::kernels

@@ -2,6 +2,7 @@
 #include "kernels/composed_of.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/neon_bytes.hpp"
+#include "kernels/sketches.hpp"
 #include "kernels/variants.hpp"
 
 namespace seqloop::kernels {
@@ -58,7 +59,12 @@ void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
   lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
-constinit const IntegerKernels neon =
-    composed_of<Products, HighwayDifferences, HighwayLanes>("neon", &has_neon);
+void sketch_together_neon(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+                          std::uint64_t* const* out) noexcept {
+  sketches(both, chosen, words, out);
+}
+
+constinit const IntegerKernels neon = composed_of<Products, HighwayDifferences, HighwayLanes>(
+    "neon", &has_neon, &sketch_together_neon);
 
 }  // namespace seqloop::kernels

@@ -22,8 +22,8 @@ struct Products : NeonBytes {
 }  // namespace
 
 constinit const IntegerKernels neon_dot{
-    "neon-dot",           &has_neon_dot, &dot<Products>,       &dot_column<Products>,
-    &dot_block<Products>, &hamming_neon, &hamming_column_neon, &sum_diagonals_neon,
-    &lowest_lines_neon};
+    "neon-dot",           &has_neon_dot,        &dot<Products>,       &dot_column<Products>,
+    &dot_block<Products>, &hamming_neon,        &hamming_column_neon, &sum_diagonals_neon,
+    &lowest_lines_neon,   &sketch_together_neon};
 
 }  // namespace seqloop::kernels

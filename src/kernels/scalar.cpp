@@ -3,6 +3,7 @@
 
 #include "kernels/composed_of.hpp"
 #include "kernels/variants.hpp"
+#include "seqloop/detail/sketch.hpp"
 
 namespace seqloop::kernels {
 namespace {
@@ -52,6 +53,6 @@ bool always() noexcept { return true; }
 }  // namespace
 
 constinit const IntegerKernels scalar =
-    composed_of<Products, Differences, OneLane<Products>>("scalar", &always);
+    composed_of<Products, Differences, OneLane<Products>>("scalar", &always, &sketch_together);
 
 }  // namespace seqloop::kernels

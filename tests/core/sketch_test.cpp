@@ -105,9 +105,14 @@ TEST(Sketch, OfManyTogetherIsThatOfEach) {
       choose_sketched_values(size, chosen);
       Bytes both(side_by_side_values(size));
       side_by_side(rows, size, both);
-      sketch_together(both, chosen, out);
-      for (std::size_t i = 0; i < sketched_together; ++i) {
-        EXPECT_EQ(sketches[i], sketched(descriptors[i], words)) << size << ' ' << words << ' ' << i;
+      for (const IntegerKernels* kernels : integer_kernels()) {
+        if (!kernels->supported()) continue;
+        for (Words& sketch : sketches) std::ranges::fill(sketch, 0);
+        kernels->sketch_together(both.data(), chosen.data(), words, out.data());
+        for (std::size_t i = 0; i < sketched_together; ++i) {
+          EXPECT_EQ(sketches[i], sketched(descriptors[i], words))
+              << kernels->name << ' ' << size << ' ' << words << ' ' << i;
+        }
       }
     }
   }

@@ -50,10 +50,11 @@ class MapVerb : public test::Program {
     return outcome;
   }
 
-  void expect_refused(const std::string& arguments, const std::string& words) const {
+  test::Outcome expect_refused(const std::string& arguments, const std::string& words) const {
     const std::string before = listing();
-    expect(2, arguments, words);
+    const test::Outcome outcome = expect(2, arguments, words);
     EXPECT_EQ(listing(), before) << arguments << " left something";
+    return outcome;
   }
 };
 
@@ -92,6 +93,15 @@ TEST_F(MapVerb, MergePutsMapsBehindEachOther) {
   expect_refused("merge a b --out b", "there is such a file already");
   expect_refused("merge a none --out d", "there is no such map");
   expect_refused("merge a --out d", "seqloop map merge A B");
+  expect_refused("merge a b ./a --out d", "./a: the same map is named twice");
+  expect(0, "merge a c --out e", "c: 80 is added to the numbers of its places");
+  (void)MapFile::open(file("other"), sqlite::MapForm{"int8", "words", 7, 7});
+  const auto refused = expect_refused("merge a none other --out d", "none: there is no such map");
+  EXPECT_NE(refused.err.find("other: its places cannot be compared with those of a: they are int8, "
+                             "of 7 values, described by 'words'; those are"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(exists("d"));
 }
 
 TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
@@ -101,13 +111,13 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
     (void)map.begin_session("empty, \"quoted\"", 3, "");
     map.save(3, {.frames = 2, .removed = std::vector<std::uint64_t>{0, 44}});
   }
-  expect(0, "export a --out folder", "");
+  expect(0, "export a --out folder", "folder: 78 places in 3 sessions");
   for (const char* name : {"map.json", "places.csv", "links.csv", "session-1.npy", "session-3.npy",
                            "thumbnail-10.jpg"}) {
     EXPECT_TRUE(exists(std::string("folder/") + name)) << name;
   }
   EXPECT_EQ(fs::file_size(file("folder/session-2.npy")), 128U + 39 * 200);
-  expect(0, "import folder --out b", "");
+  expect(0, "import folder --out b", "b: 78 places in 3 sessions");
   EXPECT_EQ(content("b"), content("a"));
   expect_refused("import folder --out b", "there is such a file already");
   fs::resize_file(file("folder/session-2.npy"), 5000);
@@ -116,17 +126,19 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   expect_refused("import folder --out c", "places.csv");
   folder_.write("folder/map.json", "{}");
   expect_refused("import folder --out c", "map.json");
+  expect_refused("import none --out c", "none/map.json: cannot be read; name a folder that");
 }
 
 TEST_F(MapVerb, ForgetAndCompactMakeItSmaller) {
   make("a", 300);
   const auto whole = fs::file_size(file("a"));
-  expect(0, "forget a monday", "a: ");
-  expect(0, "compact a", "a: ");
+  expect(0, "forget a monday", "a: 1200 places in 1 session in ");
+  expect(0, "compact a", "a: 1200 places in 1 session in ");
   EXPECT_LT(fs::file_size(file("a")), whole * 6 / 10);
-  expect(0, "check a", "1200 places in 1 sessions");
+  expect(0, "check a", "1200 places in 1 session, all");
   expect_refused("forget a monday", "there is no session 'monday'; it has: tuesday");
   expect_refused("compact none", "there is no such map");
+  expect_refused("compact .", ".: is no file; name a map");
   EXPECT_EQ(listing(), "a ");
 }
 

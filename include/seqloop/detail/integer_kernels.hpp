@@ -99,6 +99,14 @@ struct IntegerKernels {
   void (*lowest_lines)(const std::uint32_t* sums, const std::uint32_t* changes,
                        const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
                        std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
+
+  /// The sketches of `sketched_together` descriptors, the same to the bit as one by one.
+  /// @param both   what `side_by_side` wrote
+  /// @param chosen [sketched_values(words)] for this D
+  /// @param out    [words] each, written
+  /// Work: as `sketch` for each; side by side.
+  void (*sketch_together)(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+                          std::uint64_t* const* out) noexcept;
 };
 
 /// All variants that this library was built with, the best first, the one in plain C++ last. Not

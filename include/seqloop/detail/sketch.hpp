@@ -46,7 +46,7 @@ void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> ch
             std::span<std::uint64_t> out) noexcept;
 
 /// Descriptors that are sketched together: what is looked up for one of their values is looked up
-/// for all, and their sums are added side by side, in a fifth of the time.
+/// for all, and their sums are added side by side, in a fraction of the time.
 inline constexpr std::size_t sketched_together = 16;
 
 /// Values that `side_by_side` writes, and needs room for.
@@ -61,13 +61,9 @@ inline constexpr std::size_t sketched_together = 16;
 void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
                   std::size_t descriptor_size, std::span<std::int8_t> out) noexcept;
 
-/// The sketches of descriptors that lie `side_by_side`, the same to the bit as one by one.
-/// @param both   what `side_by_side` wrote
-/// @param chosen [sketched_values(words)] for this D
-/// @param out    [words] each, written
-/// Work: as `sketch` for each; side by side. Allocates: never.
-void sketch_together(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
-                     std::span<std::uint64_t* const, sketched_together> out) noexcept;
+/// What `IntegerKernels::sketch_together` is, in plain C++.
+void sketch_together(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+                     std::uint64_t* const* out) noexcept;
 
 /// How far apart two unit vectors are, of which so large a share of the bits differs: the angle
 /// between them is about pi times the share. The sine is Bhaskara's, which is off by .002 at most

@@ -253,7 +253,12 @@ void export_map(const MapFile& map, const fs::path& folder) {
 void import_map(const fs::path& folder, const fs::path& out) {
   const fs::path file = folder / "map.json";
   try {
-    const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+    std::ifstream stream(file);
+    if (!stream) {
+      throw SetupError(
+          {file.string(), "cannot be read", "name a folder that `seqloop map export` wrote"});
+    }
+    const nlohmann::json json = nlohmann::json::parse(stream);
     NewMap made(out);
     MapFile& map = made.open({json.at("form"), json.at("describer"), json.at("descriptor_size"),
                               json.at("place_bytes")});

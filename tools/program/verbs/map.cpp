@@ -34,6 +34,13 @@ std::uint64_t places_of(const std::vector<sqlite::SessionFacts>& sessions) {
   return places;
 }
 
+/// "80 places in 2 sessions"
+std::string content_of(const MapFile& map) {
+  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
+  return fmt::format("{} places in {} session{}", places_of(sessions), sessions.size(),
+                     sessions.size() == 1 ? "" : "s");
+}
+
 void info(const MapSettings& settings) {
   const fs::path file = settings.words[1];
   const MapFile map = MapFile::read_only(file);
@@ -89,9 +96,7 @@ void check(const MapSettings& settings) {
     faults.push_back({file, wrong, "`seqloop map recover` copies what is whole into a new file"});
   }
   refuse(std::move(faults));
-  const std::vector<sqlite::SessionFacts> sessions = map.sessions();
-  say("{}: {} places in {} sessions, all of them whole", file, places_of(sessions),
-      sessions.size());
+  say("{}: {}, all of them whole", file, content_of(map));
 }
 
 void recover(const MapSettings& settings) {
@@ -107,29 +112,30 @@ void merge(const MapSettings& settings) {
   const std::vector<fs::path> maps(settings.words.begin() + 1, settings.words.end());
   const std::vector<std::uint64_t> added = merge_maps(maps, settings.out, stop_if_interrupted);
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    say("{}: its place 0 is place {}", maps[i].string(), added[i]);
+    say("{}: {} is added to the numbers of its places", maps[i].string(), added[i]);
   }
-  const std::vector<sqlite::SessionFacts> sessions = MapFile::read_only(settings.out).sessions();
-  say("{}: {} places in {} sessions", settings.out.string(), places_of(sessions), sessions.size());
+  say("{}: {}", settings.out.string(), content_of(MapFile::read_only(settings.out)));
 }
 
 void exchange(const MapSettings& settings, bool exports) {
-  if (exports) {
-    export_map(MapFile::read_only(settings.words[1]), settings.out);
-  } else {
-    import_map(settings.words[1], settings.out);
-  }
+  if (!exports) import_map(settings.words[1], settings.out);
+  const MapFile map = MapFile::read_only(exports ? fs::path(settings.words[1]) : settings.out);
+  if (exports) export_map(map, settings.out);
+  say("{}: {}", settings.out.string(), content_of(map));
 }
 
 void change(const MapSettings& settings) {
   const fs::path file = settings.words[1];
-  const std::uintmax_t before = fs::exists(file) ? fs::file_size(file) : 0;
+  std::uintmax_t before = 0;
+  std::string left;
   {
     MapFile map = MapFile::open(file, std::nullopt);
+    before = fs::file_size(file);
     if (settings.words[0] == "forget") map.forget(settings.words[2]);
     if (settings.words[0] == "compact") map.compact();
+    left = content_of(map);
   }
-  say("{}: {} bytes, it were {}", file.string(), fs::file_size(file), before);
+  say("{}: {} in {} bytes, {} before", file.string(), left, fs::file_size(file), before);
 }
 
 /// What can be done with maps.
@@ -174,7 +180,8 @@ void work_on_map(const MapSettings& settings, Faults faults) {
   }
   const std::size_t given = words.size() - 1;
   if (given < asked->least || given > asked->most) {
-    faults.push_back({"map " + asked->name, fmt::format("{} names after it", given),
+    faults.push_back({"map " + asked->name,
+                      fmt::format("{} name{} after it", given, given == 1 ? "" : "s"),
                       "seqloop map " + asked->usage});
   }
   if (settings.out.empty() == asked->out) {
