@@ -6,6 +6,7 @@ Usage: fleet_net.py SEQLOOP DESCRIPTORS.npy ROBOTS [FRAMES]
 
 Prints what was found between robots against one process that has all of it, bytes and packets a place, how long
 until others know a place, and what the loop pays. Needs root, `ip netns` and `tc`; exit code 77 without.
+Delay and loss are netem's, or those of slow_network.py.
 """
 import json
 import os
@@ -19,8 +20,13 @@ import time
 
 import numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from dds.slow_network import Hub, open_tap  # noqa: E402
+
 RATE = 50       # frames a second
 OVERLAP = 0.3   # of a part with the next
+MINE = f"seqloop{os.getpid()}"  # namespaces: others may test just now, too
+SLOW = (0.05, 0.01, 0.05)  # delay and how far it varies, seconds; share of packets that is lost
 
 
 def command(*words: object, check: bool = True) -> str:
@@ -29,18 +35,18 @@ def command(*words: object, check: bool = True) -> str:
 
 def ask_for_namespaces() -> None:
     """Ends with 77 where there are none to be had."""
-    if os.geteuid() != 0 or subprocess.run(["ip", "netns", "add", "seqloopx"], capture_output=True).returncode != 0:
+    if os.geteuid() != 0 or subprocess.run(["ip", "netns", "add", MINE], capture_output=True).returncode != 0:
         print("network namespaces cannot be made here")
         sys.exit(77)
-    command("ip", "netns", "del", "seqloopx")
+    command("ip", "netns", "del", MINE)
 
 
 class Network:
     """A switch, and a namespace for each robot."""
 
     def __init__(self, robots: int) -> None:
-        self.names = [f"seqloop{robot}" for robot in range(robots)]
-        self.hub = "seqlooph"
+        self.names = [f"{MINE}r{robot}" for robot in range(robots)]
+        self.hub = f"{MINE}h"
         self.remove()
         command("ip", "netns", "add", self.hub)
         command("ip", "-n", self.hub, "link", "add", "switch", "type", "bridge", "mcast_snooping", "0")
@@ -70,6 +76,33 @@ class Network:
         """@return bytes, packets"""
         link = json.loads(command("ip", "-n", self.names[robot], "-s", "-j", "link", "show", "radio"))[0]["stats64"]
         return link["tx"]["bytes"], link["tx"]["packets"]
+
+
+class SlowNetwork(Network):
+    """The same, with delay and loss where the kernel has no netem: a process hands packets on, late or not at all."""
+
+    def __init__(self, robots: int, delay_s: float, jitter_s: float, loss: float) -> None:
+        self.names = [f"{MINE}r{robot}" for robot in range(robots)]
+        self.hub = f"{MINE}h"
+        self.remove()
+        self.taps = []
+        for robot, name in enumerate(self.names):
+            command("ip", "netns", "add", name)
+            self.taps.append(open_tap(name, "radio"))
+            command("ip", "-n", name, "addr", "add", f"10.9.0.{robot + 1}/24", "dev", "radio")
+            command("ip", "-n", name, "link", "set", "radio", "up")
+            command("ip", "-n", name, "link", "set", "lo", "up")
+        self.process = Hub(self.taps, delay_s, jitter_s, loss)
+
+    def remove(self) -> None:
+        if hasattr(self, "process"):
+            self.process.end()
+            for tap in self.taps:
+                os.close(tap)
+        super().remove()
+
+    def cut_off(self, robot: int, off: bool) -> None:
+        self.process.cut[robot] = off
 
 
 class Robot:
@@ -180,9 +213,9 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
                       ("the same, one cut off from 6 to 12 s", True, ("delay", "50ms", "10ms", "loss", "5%"), True)]
         whole = None
         for name, fleet, netem, cut_off in conditions:
-            if netem and not network.worsen(*netem):
-                print(f"{name}: not tried: this kernel has no netem")
-                continue
+            if netem and not isinstance(network, SlowNetwork) and not network.worsen(*netem):
+                network.remove()
+                network = SlowNetwork(robots, *SLOW)
             before = [network.sent(robot) for robot in range(robots)]
             runs = drive_all(seqloop, work, network, robots, fleet, cut_off)
             print(f"{name}: {misses(runs)}")
@@ -215,6 +248,9 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
                 waits = numpy.concatenate([latencies(runs[0], runs[1]), latencies(runs[1], runs[0])])
                 print(f"  until the other knew a place: p50 {numpy.median(waits):.2f} s, p99 "
                       f"{numpy.percentile(waits, 99):.2f} s of {len(waits)}")
+            if isinstance(network, SlowNetwork):
+                hub = network.process
+                print(f"  {hub.lost.value} packets lost, {hub.handed_on.value} handed on, until now")
             sys.stdout.flush()
     finally:
         network.remove()

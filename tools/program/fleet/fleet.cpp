@@ -34,6 +34,7 @@ class Fleet::Impl {
         map_(config, settings.places, most_fleet_sessions, own),
         through_own_(config, own),
         numbers_(config, nullptr),
+        novel_(settings.novel),
         talk_(settings, *participant_, map) {
     loops_.reserve(most_loops);
   }
@@ -51,6 +52,7 @@ class Fleet::Impl {
         through_own_.take(processed.report.answers, mine.report.answers);
     numbers_.rename(mine);
     link(mine.report.answers);
+    link_own(processed.report.answers);
     close(numbers_.rename(both));
     const Nanoseconds took = clock.now() - before;
     processed.times.match += took;
@@ -62,6 +64,7 @@ class Fleet::Impl {
     const std::span<const Answer> last = map_.finish();
     const std::span<const Answer> both = through_own_.finish(rest, last);
     link(numbers_.rename(last));
+    link_own(rest);
     close(numbers_.rename(both));
   }
 
@@ -97,6 +100,7 @@ class Fleet::Impl {
         "{} places were told; of others {} places of {} sessions are known, and {} "
         "frames closed loops with them",
         counts.told, counts.heard, counts.sessions, closed_);
+    if (novel_) text += fmt::format("; {} were not told, being no novel ones", counts.known);
     if (counts.untold > 0) {
       text += fmt::format("; {} were not told, for the network or --fleet-kbps is too slow",
                           counts.untold);
@@ -123,13 +127,27 @@ class Fleet::Impl {
   /// Others are told which frames are places of theirs. What follows from the robot's own loops,
   /// which they are told as well, follows for them, too.
   void link(std::span<const Answer> answers) noexcept {
-    // As within a map, for later frames of all.
-    constexpr float likely = 0.9F;
     for (const Answer& answer : answers) {
-      if (!answer.match || !(answer.probability >= likely)) continue;
+      if (!likely(answer)) continue;
       const OthersMap::Place place = map_.where(answer.match->place);
-      talk_.found({answer.frame, place.session, place.frame});
+      talk_.found({answer.frame, place.session, place.frame, {}});
     }
+  }
+
+  /// They are told at once, too, where the robot was at a place of its own: in the map's file that
+  /// is only when all that follows is known, and until then its places contest each other.
+  /// @param answers of the robot's own map
+  void link_own(std::span<const Answer> answers) noexcept {
+    for (const Answer& answer : numbers_.rename(answers)) {
+      if (novel_) talk_.judged({answer.frame, answer.gate == Gate::match});
+      if (likely(answer)) talk_.found({answer.frame, 0, 0, answer.match->place});
+    }
+  }
+
+  /// As within a map, for later frames of all.
+  [[nodiscard]] static bool likely(const Answer& answer) noexcept {
+    constexpr float enough = 0.9F;
+    return answer.match && answer.probability >= enough;
   }
 
   void close(std::span<const Answer> answers) noexcept {
@@ -152,6 +170,7 @@ class Fleet::Impl {
   OthersMap map_;
   ThroughOwn through_own_;
   SourceNumbers numbers_;
+  bool novel_;
   std::span<const Answer> answers_;
   std::vector<OtherLoop> loops_;
   std::uint64_t closed_ = 0;

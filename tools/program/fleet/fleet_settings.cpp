@@ -4,8 +4,20 @@
 #include <unistd.h>
 
 #include <array>
+#include <stdexcept>
+#include <string_view>
 
 namespace seqloop::program {
+namespace {
+
+/// @return whether novel places alone are told
+bool parse_tell(std::string_view text) {
+  if (text == "novel") return true;
+  if (text == "all") return false;
+  throw std::invalid_argument("'" + std::string(text) + "' is neither all nor novel");
+}
+
+}  // namespace
 
 void add_fleet_options(OptionTable& options, FleetSettings& settings) {
   options.section("Map", Shown::in_help_all);
@@ -17,12 +29,18 @@ void add_fleet_options(OptionTable& options, FleetSettings& settings) {
   options.number("fleet-kbps", settings.kbps,
                  "kilobits of places that are told a second; more waits, and beyond --fleet-places "
                  "the oldest is left out [0: no limit]");
+  options.add(
+      {"fleet-tell", ValueKind::text,
+       "all: each place; novel: those at which this robot was not before, once that is known "
+       "[all]",
+       [&settings](std::string_view value) { settings.novel = parse_tell(value); }});
   options.text("robot", settings.robot, "this robot's name among others [the machine's]");
 }
 
 void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults) {
   if (settings.name.empty()) {
     if (!settings.robot.empty()) faults.push_back({"robot", "there are no others", "--fleet NAME"});
+    if (settings.novel) faults.push_back({"fleet-tell", "nothing is told", "--fleet NAME"});
     if (settings.kbps != 0.0) faults.push_back({"fleet-kbps", "nothing is told", "--fleet NAME"});
     return;
   }

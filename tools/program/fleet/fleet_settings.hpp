@@ -14,6 +14,7 @@ struct FleetSettings {
   std::string robot;            ///< name of this one; empty: the machine's
   std::size_t places = 20'000;  ///< room for those of others
   double kbps = 0.0;            ///< kilobits that this one tells a second; 0: all
+  bool novel = false;           ///< tells only places at which it closes no loop with its own
 };
 
 /// Sessions of others that are known at a time, those that are not heard included.

@@ -31,6 +31,9 @@ dds::FleetSession about_of(const FleetSettings& settings, const PlaceForm& form)
           static_cast<std::uint32_t>(form.place_bytes)};
 }
 
+// A frame this far behind one whose answer is known has none.
+constexpr std::uint64_t never_judged = 300;
+
 // Of a message beside a descriptor, on the wire: with the headers of all layers.
 constexpr std::size_t message_bytes = 200;
 
@@ -49,6 +52,7 @@ FleetTalk::FleetTalk(const FleetSettings& settings, const dds::Participant& part
       others_(about_, earlier_, settings.places),
       heard_(queued, map.form().place_bytes),
       allowance_(settings.kbps),
+      novel_(settings.novel),
       thread_([this] { work(); }) {
   map.when_saved([saved = saved_](const SavedPlace& place) { saved->keep(place); });
 }
@@ -129,8 +133,15 @@ void FleetTalk::tell_newest() {
     {
       const std::scoped_lock lock(saved_->mutex);
       if (saved_->waiting.empty()) return;
+      const SavedPlace& next = saved_->waiting.front().place;
+      const std::optional<bool> novel = next.visits ? true : is_novel(next.frame);
+      if (!novel) return;
       place = std::move(saved_->waiting.front());
       saved_->waiting.pop_front();
+      if (!*novel) {
+        ++known_;
+        continue;
+      }
       if (running_.empty()) running_ = saved_->session;
     }
     SavedPlace whole = place.place;
@@ -141,18 +152,56 @@ void FleetTalk::tell_newest() {
       saved_->waiting.push_front(std::move(place));
       return;
     }
-    if (!whole.visits) newest_told_ = {whole.began_ns, whole.frame};
+    if (whole.visits) continue;
+    newest_told_ = {whole.began_ns, whole.frame};
+    if (novel_) told_frames_.insert(whole.frame);
   }
+}
+
+/// @return whether a place is to be told; nothing as long as that is not known. Frames rise
+std::optional<bool> FleetTalk::is_novel(std::uint64_t frame) {
+  if (!novel_) return true;
+  while (const Judged* const judged = judged_.front()) {
+    loops_[judged->frame] = judged->loop;
+    newest_judged_ = std::max(newest_judged_, judged->frame);
+    if (!judged->loop) newest_novel_ = std::max(newest_novel_, judged->frame);
+    judged_.pop();
+  }
+  const auto known = loops_.find(frame);
+  if (known != loops_.end()) {
+    const bool novel = !known->second;
+    loops_.erase(known);
+    return novel;
+  }
+  // Of a frame that never came nothing is said; and of those that close no loop it is in order.
+  if (ending_ || newest_novel_ > frame || newest_judged_ > frame + never_judged) return true;
+  return std::nullopt;
 }
 
 /// Places of this drive that are places of others, once they are told themselves.
 void FleetTalk::tell_found() {
   while (const Found* const found = found_.front()) {
     if (!newest_told_ || found->frame > newest_told_->frame) return;
-    const dds::FleetVisit visited{others_.names(found->session).began_ns, found->session_frame};
-    if (!publish({newest_told_->session, found->frame, 0, {}, visited, {}}, nullptr)) return;
+    if (novel_ && !told_frames_.contains(found->frame)) {
+      found_.pop();
+      continue;
+    }
+    const std::optional<dds::FleetVisit> visited = place_of(*found);
+    if (visited) {
+      if (!publish({newest_told_->session, found->frame, 0, {}, visited, {}}, nullptr)) return;
+      if (found->own) linked_.insert(found->frame);
+    }
     found_.pop();
   }
+}
+
+/// @return nothing where the place was not told
+std::optional<dds::FleetVisit> FleetTalk::place_of(const Found& found) const {
+  if (!found.own) {
+    return dds::FleetVisit{others_.names(found.session).began_ns, found.session_frame};
+  }
+  const auto told = told_as_.find(*found.own);
+  return told == told_as_.end() ? std::nullopt : std::optional(told->second);
 }
 
 /// By what the running session is standardised, once that many of its places are told.
@@ -178,9 +227,12 @@ bool FleetTalk::tell(const SavedPlace& place) {
     return publish(none, nullptr);
   }
   if (place.visits) {
+    if (newest_told_ && place.began_ns == newest_told_->session && linked_.erase(place.frame) > 0) {
+      return true;
+    }
     const auto visited = told_as_.find(*place.visits);
-    // What has gone from the map was not told.
-    if (visited == told_as_.end()) return true;
+    // What has gone from the map was not told, or is not novel.
+    if (visited == told_as_.end() || !told_as_.contains(place.number)) return true;
     return publish({place.began_ns, place.frame, 0, {}, visited->second, {}}, nullptr);
   }
   if (std::exchange(session_, place.began_ns) != place.began_ns) {
@@ -242,7 +294,8 @@ std::optional<std::string> FleetTalk::news() {
 
 FleetTalk::Counts FleetTalk::counts() {
   const std::scoped_lock lock(saved_->mutex);
-  return {told_, saved_->untold + saved_->waiting.size(), others_.places(), others_.sessions()};
+  return {told_, known_, saved_->untold + saved_->waiting.size(), others_.places(),
+          others_.sessions()};
 }
 
 }  // namespace seqloop::program

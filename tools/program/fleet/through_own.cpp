@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "program/fleet/place_number.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -78,7 +80,7 @@ void ThroughOwn::take_both(Pending& frame) noexcept {
     const auto row = own_->order().row_of_number(frame.own->match->place);
     if (accepted(frame.others)) {
       learn(row, *frame.others);
-    } else if (const Known* const place = known(row)) {
+    } else if (const std::optional<Known> place = known(row)) {
       Answer& answer = *frame.others;
       answer.gate = Gate::match;
       answer.probability = std::min(frame.own->probability, place->probability);
@@ -107,25 +109,31 @@ void ThroughOwn::learn(std::optional<std::size_t> row, const Answer& others) noe
   known_[order.slot(*first)] = {order.number(*first), place.other, place.probability};
 }
 
-/// @return of the rows that are the place of this one, the nearest that is known
-const ThroughOwn::Known* ThroughOwn::known(std::optional<std::size_t> row) const noexcept {
-  if (!row) return nullptr;
+/// @return what the nearest row that is known says; where that lies some rows off, so does the
+///   other robot's frame
+std::optional<ThroughOwn::Known> ThroughOwn::known(std::optional<std::size_t> row) const noexcept {
+  if (!row) return std::nullopt;
   const PlaceOrder& order = own_->order();
-  const auto near = [&](std::size_t middle) -> const Known* {
+  const auto near = [&](std::size_t middle) -> std::optional<Known> {
     const CandidateRun session = order.around(middle);
     for (std::size_t by = 0; by <= beside; ++by) {
       for (const std::size_t at : {middle - by, middle + by}) {
         // Below 0, too: then it is a very large number.
         if (at < session.first || at >= session.last) continue;
-        const Known& place = known_[order.slot(at)];
-        if (place.number == order.number(at)) return &place;
+        Known place = known_[order.slot(at)];
+        if (place.number != order.number(at)) continue;
+        const std::uint64_t frame = frame_of(place.other);
+        const std::uint64_t there =
+            at > middle ? frame - std::min<std::uint64_t>(frame, by) : frame + by;
+        place.other = static_cast<std::size_t>(place_number(session_of(place.other), there));
+        return place;
       }
     }
-    return nullptr;
+    return std::nullopt;
   };
-  if (const Known* const place = near(*row)) return place;
+  if (const std::optional<Known> place = near(*row)) return place;
   const auto first = first_visit(*row);
-  return first && *first != *row ? near(*first) : nullptr;
+  return first && *first != *row ? near(*first) : std::nullopt;
 }
 
 /// The row that a frame of the drive has become.

@@ -61,7 +61,7 @@ class ThroughOwn {
   void take_both(Pending& frame) noexcept;
   void tell(Pending& frame) noexcept;
   void learn(std::optional<std::size_t> row, const Answer& others) noexcept;
-  [[nodiscard]] const Known* known(std::optional<std::size_t> row) const noexcept;
+  [[nodiscard]] std::optional<Known> known(std::optional<std::size_t> row) const noexcept;
   [[nodiscard]] std::optional<std::size_t> row_of_frame(std::uint64_t frame) const noexcept;
   [[nodiscard]] std::optional<std::size_t> first_visit(std::size_t row) const noexcept;
 
