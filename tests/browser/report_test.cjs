@@ -11,6 +11,8 @@ async function main([path, file, folder]) {
     await page.waitForFunction(() => view.dots.length > 20);
     await page.waitForFunction(() => document.getElementById('source').textContent.includes('<b>query'));
     assert.ok((await page.locator('#loops li').count()) > 0);
+    const values = await page.$$eval('#counts dd, #map dd', (all) => all.map((one) => one.textContent));
+    assert.ok(values.length > 10 && !values.includes('–'), `what lines do not tell has no row: ${values}`);
     const {left, top} = await page.evaluate(() => view.dots[0]);
     await page.click('#places', {position: {x: left, y: top}});
     assert.ok((await page.textContent('#places-picked')).startsWith('Frame '));

@@ -142,7 +142,10 @@ function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions, places)
 function drawProbability(canvas, answers, least) {
   const area = sized(canvas);
   const shown = answers.slice(-1500);
-  const {x, y} = axes(area, shown.length ? shown[0].frame : 0, shown.length ? shown[shown.length - 1].frame : 1, 1, 'frame');
+  // Answers come in any order.
+  const first = shown.reduce((least, one) => Math.min(least, one.frame), shown.length ? shown[0].frame : 0);
+  const last = shown.reduce((most, one) => Math.max(most, one.frame), 1);
+  const {x, y} = axes(area, first, last, 1, 'frame');
   const {context} = area;
   for (const [status, name] of [[false, 'soft'], [true, 'accent']]) {
     context.fillStyle = colour(name);

@@ -79,12 +79,13 @@ function showStatus(status) {
       answer.velocity !== null && `velocity ${answer.velocity.toFixed(2)}`, `head ${number(answer.head)}`].filter(Boolean).join(' · ') : '');
   fillTerms('counts', [['frames', number(counts.frames)], ...['match', 'unsure', 'new_place', 'not_unique', 'no_candidate',
     'warming_up', 'frame_error', 'no_frame'].filter((name) => gates[name] || name === 'match').map((name) => [name, number(gates[name])]),
-    ...(frame ? newestTerms(frame) : []), ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
+    ...(frame && !report ? newestTerms(frame) : []), ['deadline_missed', number(counts.misses)], ['dropped', number(counts.dropped)], ['lost', number(counts.lost)],
     ['overloaded', number(counts.overloaded)], ['unseen', number(status.unseen)],
     ...(run.capture ? [['capture', run.capture]] : []), ...(frame && frame.sequence ? [['sequence', number(frame.sequence)]] : [])]);
   showTroubles(status.troubles);
   const once = map.scanned ? Math.ceil(map.places / map.scanned) : 0;
-  fillTerms('map', [['places', (report ? '–' : number(map.places)) + (run.places ? ' of ' + number(run.places) : '')],
+  const room = run.places ? ' of ' + number(run.places) : '';
+  const terms = [['places', report ? (run.places ? 'room for ' + number(run.places) : '–') : number(map.places) + room],
     ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', sessionNames(run.sessions)]]),
     ...(status.fleet ? [['fleet', `${number(status.fleet.places)} places of other robots, ${number(status.fleet.loops)} loops with them`]] : []),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
@@ -92,7 +93,8 @@ function showStatus(status) {
     ['map_full', yes(frame && frame.map_full)],
     ['scanned', map.scanned ? `${number(map.scanned)} of ${number(map.places)}` + (once > 1 ? `; once round the map in ${once} frames` : '; the whole map') : '–'],
     ['memory_planned', bytes(run.memory_planned)], ['memory_used', bytes(map.memory_used)],
-    ['method', run.method || '–'], ['ds', number(run.ds)]]);
+    ['method', run.method || '–'], ['ds', number(run.ds)]];
+  fillTerms('map', terms.filter(([, value]) => !report || value !== '–'));  // lines do not tell everything
   if (!report) byId('save').hidden = map.saved === undefined;
   showStages(status);
   if (!report) show('pause', status.state === 'paused' ? 'resume' : 'pause');
@@ -208,6 +210,7 @@ if (report) {
   takeHistory().then(showAll);
   for (const id of ['truth', 'monitor', 'control']) byId(id).remove();
   byId('pair').hidden = true;
+  document.querySelector('main').className = 'over';
   byId('pair').parentElement.className = 'full';
   show('h-now', 'In short');
 } else {
