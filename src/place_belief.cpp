@@ -33,10 +33,6 @@ bool used(const MatcherConfig& config) { return config.decision == Decision::pro
 
 }  // namespace
 
-double PlaceBelief::Level::lead(double value) const noexcept {
-  return (value - mean) / std::sqrt(variance + 0.25);
-}
-
 PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
     : rows_(arena.take<Hypothesis>("hypotheses", used(config) ? most : 0)),
       moved_(arena.take<Hypothesis>("hypotheses that have moved", used(config) ? 4 * most : 0)),
@@ -141,6 +137,7 @@ void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
       const double share = place->mass / (place->mass + mass);
       place->mass += mass;
       place->gain *= share;
+      place->wrong *= share;
       place->contrast *= share;
       place->age *= share;
       continue;
@@ -184,7 +181,8 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     const double l = std::clamp(z + 0.7 * contrast - scene.bias, -1.5, 3.0);
     gains[i] = l;
     at.mass *= exponential(w * l);
-    at.gain = decay * at.gain + w * l;
+    at.told = w * l;
+    at.gain = decay * at.gain + at.told;
     at.contrast = decay * at.contrast + (1.0 - decay) * contrast;
     at.age += w;
     at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
@@ -194,10 +192,9 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
   new_place_ /= sum;
-  for (double& gain : gains) gain *= w;
   traces_.next(w);
   for (std::size_t i = 0; i < count_; ++i) {
-    traces_.set(i, rows_[i].row, rows_[i].parent, gains[i]);
+    traces_.set(i, rows_[i].row, rows_[i].parent, rows_[i].told);
   }
 }
 
@@ -228,11 +225,16 @@ void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
 }
 
 void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
-  const std::span<const Hypothesis> rows = rows_.first(count_);
+  const std::span<Hypothesis> rows = rows_.first(count_);
   const auto top = std::ranges::max_element(rows, {}, &Hypothesis::mass);
-  if (top == rows.end()) return;
+  if (top == rows.end()) {
+    wrong_.take({});
+    return;
+  }
+  constexpr double half = 0.5;
+  const bool on_map = new_place_ <= half;
   double place = 0.0;
-  double wrong = -2.0;
+  std::optional<WrongRows::Row> other;
   for (std::size_t first = 0; first < rows.size();) {
     // Another session may know the place, too: its likeliest row is no wrong one.
     const std::size_t end = view.map->order().around(rows[first].row).last;
@@ -242,40 +244,50 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
       if (rows[last].mass > rows[best].mass) best = last;
     }
     for (; first < last; ++first) {
-      if (view.map->same_place(rows[first].row, top->row)) {
-        place += rows[first].mass;
-      } else if (!view.map->same_place(rows[first].row, rows[best].row)) {
-        wrong = std::max(wrong, rows[first].gain);
+      Hypothesis& at = rows[first];
+      const bool same = view.map->same_place(at.row, top->row);
+      // What a row gained while it was right says nothing about wrong ones.
+      at.wrong = decay * at.wrong + (same && on_map ? 0.0 : at.told);
+      if (same) {
+        place += at.mass;
+      } else if (!view.map->same_place(at.row, rows[best].row) &&
+                 (!other || at.wrong > other->sum)) {
+        other = {at.row, at.wrong};
       }
     }
   }
-  // Somewhere new the best row is a wrong one too.
-  constexpr double half = 0.5;
-  learn(new_place_ > half ? std::max(wrong, top->gain) : wrong, scene);
+  const auto index = static_cast<std::size_t>(top - rows.begin());
+  know_better(*view.map, index);
+  wrong_.take({WrongRows::Row{top->row, top->wrong}, other, on_map,
+               scene.novelty > least_novelty ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   likeliest_ = Likeliest{top->row,
-                         static_cast<std::size_t>(top - rows.begin()),
+                         index,
                          {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain),
                           top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
 }
 
-/// What the best wrong row has gained.
-void PlaceBelief::learn(double wrong, const Scene& scene) noexcept {
-  if (scene.novelty <= least_novelty) return;
-  constexpr double longest = 300.0;
-  if (wrong_weight_ == 0.0) {
-    wrong_.mean = wrong;
-    usual_novelty_ = scene.novelty;
+/// Which rows were wrong some frames ago, by the trace of what is the likeliest row now.
+void PlaceBelief::know_better(const PlaceMap& map, std::size_t index) noexcept {
+  WrongRows::Frame* const then = wrong_.due();
+  constexpr double half = 0.5;
+  if (then == nullptr || !then->likeliest || new_place_ > half) return;
+  std::array<BeliefTraces::Step, WrongRows::lag + 1> steps;
+  if (traces_.trace(index, steps) < steps.size()) return;
+  const std::size_t right = steps.back().row;
+  if (map.same_place(then->likeliest->row, right)) {
+    then->on_map = true;
+  } else if (then->other && map.same_place(then->other->row, right)) {
+    then->other = then->likeliest;
+    then->on_map = true;
   }
-  const double share = 1.0 / std::min(wrong_weight_ + 1.0, longest);
-  wrong_weight_ += 2.0 * scene.novelty;
-  wrong_.follow(wrong, share);
-  usual_novelty_ += share * (scene.novelty - usual_novelty_);
 }
 
 double PlaceBelief::usual_gain() const noexcept {
-  return (1.0 - decay) * std::max(0.0, wrong_.mean) / usual_novelty_;
+  // A little more than they do: (1 - decay) would be their mean.
+  constexpr double share = 0.065;
+  return share * std::max(0.0, wrong_.mean()) / wrong_.novelty();
 }
 
 double PlaceBelief::remember(double odds) noexcept {
@@ -288,6 +300,7 @@ double PlaceBelief::remember(double odds) noexcept {
 void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept {
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     traces_.next(0.0);
+    wrong_.take({});
     const std::size_t before = std::exchange(count_, 0);
     for (std::size_t i = 0; i < before; ++i) {
       const std::size_t row = rows_[i].row;
@@ -304,6 +317,7 @@ void PlaceBelief::removed(std::size_t row) noexcept {
     if (at.row > row) --at.row;
   }
   traces_.removed(row);
+  wrong_.removed(row);
 }
 
 void PlaceBelief::inserted(std::size_t row) noexcept {
@@ -311,6 +325,7 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
     if (at.row >= row) ++at.row;
   }
   traces_.inserted(row);
+  wrong_.inserted(row);
 }
 
 void PlaceBelief::restart() noexcept {
@@ -318,6 +333,7 @@ void PlaceBelief::restart() noexcept {
   new_place_ = 1.0;
   likeliest_.reset();
   traces_.restart();
+  wrong_.settle();
 }
 
 }  // namespace seqloop

@@ -3,6 +3,7 @@
 // without thought of speed: rows in a tree, the C library's functions, no rows kept sorted.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -21,7 +22,8 @@ constexpr std::size_t size = 128;
 class NaiveBelief {
  public:
   struct Row {
-    double mass = 0.0, gain = 0.0, clear = 0.0, age = 0.0, doubt = 0.0;
+    double mass = 0.0, gain = 0.0, wrong = 0.0, clear = 0.0, age = 0.0, doubt = 0.0;
+    std::vector<std::size_t> way;  // rows that it came through, the newest last
   };
 
   void observe(const SceneView& view) {
@@ -101,7 +103,8 @@ class NaiveBelief {
       if (born <= 0.0) break;
       Row& at = moved[found.row];
       const double old = at.mass / (at.mass + born / n);
-      at = {at.mass + born / n, at.gain * old, at.clear * old, at.age * old, at.doubt};
+      at = {at.mass + born / n, at.gain * old, at.wrong * old, at.clear * old,
+            at.age * old,       at.doubt,      at.way};
     }
     // Weigh.
     std::map<std::size_t, double> gains;
@@ -120,6 +123,7 @@ class NaiveBelief {
       }
       const double l = std::clamp((mu - here) / sigma + 0.7 * contrast - bias, -1.5, 3.0);
       gains[row] = l;
+      at.way.push_back(row);
       at.mass *= std::exp(w * l);
       at.gain = 0.95 * at.gain + w * l;
       at.clear = 0.95 * at.clear + 0.05 * contrast;
@@ -145,7 +149,7 @@ class NaiveBelief {
     }
     for (auto& [row, at] : rows_) at.mass /= sum;
     new_place /= sum;
-    judge(w);
+    judge(w, gains);
   }
 
   double new_place = 1.0;
@@ -153,33 +157,65 @@ class NaiveBelief {
   Evidence evidence;
 
  private:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  /// What a frame showed of wrong rows.
+  struct Showed {
+    std::size_t row = 0, other = 0;  // the likeliest, and the best elsewhere
+    double sum = 0.0, best = -2.0;   // their sums while wrong
+    bool on_map = false;
+    double novelty = 0.0;
+    [[nodiscard]] double wrong() const { return std::max({-2.0, best, on_map ? -2.0 : sum}); }
+  };
+
   /// 6.4
-  void judge(double w) {
+  void judge(double w, const std::map<std::size_t, double>& gains) {
     if (rows_.empty()) return;
     const auto best =
         std::ranges::max_element(rows_, {}, [](const auto& at) { return at.second.mass; });
     likeliest = best->first;
+    const bool on_map = new_place <= 0.5;
+    const auto same = [](std::size_t a, std::size_t b) { return a + 10 >= b && a <= b + 10; };
     double big = 0.0;
-    double wrong = -2.0;
-    for (const auto& [other, at] : rows_) {
-      if (other + 10 >= likeliest && other <= likeliest + 10) {
+    Showed showed{likeliest, none, 0.0, -1e9, on_map, w};
+    for (auto& [row, at] : rows_) {
+      const bool here = same(row, likeliest);
+      at.wrong = 0.95 * at.wrong + (here && on_map ? 0.0 : w * gains.at(row));
+      if (here) {
         big += at.mass;
-      } else {
-        wrong = std::max(wrong, at.gain);
+      } else if (at.wrong > showed.best) {
+        showed.best = at.wrong;
+        showed.other = row;
       }
     }
-    if (new_place > 0.5) wrong = std::max(wrong, best->second.gain);
-    if (w > 0.02) {
-      if (weight_ == 0.0) mean_ = wrong;
-      const double a = 1.0 / std::min(weight_ + 1.0, 300.0);
-      weight_ += 2.0 * w;
-      const double off = wrong - mean_;
-      mean_ += a * off;
-      variance_ = (1.0 - a) * (variance_ + a * off * off);
+    showed.sum = best->second.wrong;
+    showed_.push_back(showed);
+    // What was shown 20 frames ago is known better now.
+    const std::vector<std::size_t>& way = best->second.way;
+    if (showed_.size() > 20 && on_map && way.size() > 20) {
+      Showed& then = showed_[showed_.size() - 21];
+      const std::size_t right = way[way.size() - 21];
+      if (same(then.row, right)) {
+        then.on_map = true;
+      } else if (then.other != none && same(then.other, right)) {
+        then.best = then.sum;
+        then.on_map = true;
+      }
+    }
+    // All frames anew.
+    double mean = 0.0, variance = 1.0, weight = 0.0;
+    for (const Showed& frame : showed_) {
+      if (frame.novelty <= 0.02) continue;
+      if (weight == 0.0) mean = frame.wrong();
+      const double a = 1.0 / std::min(weight + 1.0, 300.0);
+      weight += 2.0 * frame.novelty;
+      const double off = frame.wrong() - mean;
+      mean += a * off;
+      variance = (1.0 - a) * (variance + a * off * off);
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
     evidence = {std::log(big / (1.0 - big)),
-                (best->second.gain - mean_) / std::sqrt(variance_ + 0.25),
+                (best->second.gain - mean) / std::sqrt(variance + 0.25),
                 best->second.clear,
                 std::log(1.0 + best->second.age),
                 0.0,
@@ -187,7 +223,7 @@ class NaiveBelief {
   }
 
   std::map<std::size_t, Row> rows_;
-  double mean_ = 0.0, variance_ = 1.0, weight_ = 0.0;
+  std::vector<Showed> showed_;
 };
 
 void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vectors& query) {

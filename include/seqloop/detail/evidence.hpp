@@ -18,7 +18,7 @@ struct Evidence {
 /// The log-odds that the row is right, by all but the doubt: a logistic regression. Source:
 /// src/README.md, section 6.4.
 [[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
-  return -4.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
+  return -5.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
          8.984 * e.margin;
 }
 

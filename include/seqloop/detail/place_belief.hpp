@@ -11,6 +11,7 @@
 #include "seqloop/detail/belief_traces.hpp"
 #include "seqloop/detail/evidence.hpp"
 #include "seqloop/detail/scene.hpp"
+#include "seqloop/detail/wrong_rows.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
@@ -79,30 +80,20 @@ class PlaceBelief {
   [[nodiscard]] double usual_gain() const noexcept;
 
   /// The novelty that a frame of this drive has, 0 .. 1.
-  [[nodiscard]] double usual_novelty() const noexcept { return usual_novelty_; }
+  [[nodiscard]] double usual_novelty() const noexcept { return wrong_.novelty(); }
 
  private:
   struct Hypothesis {
     std::size_t row = 0;
     double mass = 0.0;      // belief
-    double gain = 0.0;      // decaying sum of what its frames said for it
+    double told = 0.0;      // what the newest frame said for it
+    double gain = 0.0;      // decaying sum of that
+    double wrong = 0.0;     // the same of the frames at which it was wrong
     double past = -10.0;    // best log-odds on the way, fading
     double contrast = 0.0;  // decaying mean
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     std::uint32_t parent = BeliefTraces::none;
-  };
-  /// A running mean and variance.
-  struct Level {
-    double mean = 0.0;
-    double variance = 1.0;
-
-    void follow(double value, double share) noexcept {
-      const double off = value - mean;
-      mean += share * off;
-      variance = (1.0 - share) * (variance + share * off * off);
-    }
-    [[nodiscard]] double lead(double value) const noexcept;
   };
 
   static void prefetch(const SceneView& view) noexcept;
@@ -112,15 +103,13 @@ class PlaceBelief {
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene) noexcept;
-  void learn(double wrong, const Scene& scene) noexcept;
+  void know_better(const PlaceMap& map, std::size_t index) noexcept;
   [[nodiscard]] double share(const SceneView& view, std::uint64_t frame, std::size_t row) noexcept;
 
   std::size_t sketches_ = 0;
   double new_place_ = 1.0;
-  Level wrong_;                 // what the best wrong row gains
-  double usual_novelty_ = 1.0;  // of the frames that it was learnt from
-  double wrong_weight_ = 0.0;   // how many these are
-  double novelty_ = 0.0;        // of the newest frame
+  WrongRows wrong_;       // what the best wrong rows gain
+  double novelty_ = 0.0;  // of the newest frame
   std::size_t count_ = 0;
   std::size_t moved_count_ = 0;
   std::optional<Likeliest> likeliest_;
