@@ -103,7 +103,7 @@ TEST(Sketch, OfManyTogetherIsThatOfEach) {
       }
       std::vector<SketchedValue> chosen(sketched_values(words));
       choose_sketched_values(size, chosen);
-      Bytes both(side_by_side_values(size));
+      Bytes both(static_cast<std::size_t>(side_by_side_values(size)));
       side_by_side(rows, size, both);
       for (const IntegerKernels* kernels : integer_kernels()) {
         if (!kernels->supported()) continue;

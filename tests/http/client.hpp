@@ -53,7 +53,7 @@ class Client {
       if (end != std::string::npos) {
         const std::size_t at = received_.find("Content-Length: ");
         const std::size_t body =
-            at < end ? std::strtoull(received_.c_str() + at + 16, nullptr, 10) : 0;
+            at < end ? std::strtoul(received_.c_str() + at + 16, nullptr, 10) : 0;
         if (received_.size() >= end + 4 + body) {
           text = received_.substr(0, end + 4 + body);
           received_.erase(0, text.size());

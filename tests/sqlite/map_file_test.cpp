@@ -162,11 +162,12 @@ TEST_F(Map, ReadingThatIsGivenUpLeavesItAsItWas) {
     EXPECT_EQ(taken, blocks + 1);
   }
   std::uint64_t next = 0;
+  const auto bytes = static_cast<std::size_t>(form.place_bytes);
   map.read([&](const sqlite::PlaceBlock& block) {
     for (std::size_t i = 0; i < block.records.size(); ++i) {
       ASSERT_EQ(block.records[i].number, next);
-      const auto place = block.places.subspan(i * form.place_bytes, form.place_bytes);
-      ASSERT_TRUE(std::ranges::equal(place, test::sample_place(next, form.place_bytes)));
+      const auto place = block.places.subspan(i * bytes, bytes);
+      ASSERT_TRUE(std::ranges::equal(place, test::sample_place(next, bytes)));
       ++next;
     }
   });
@@ -200,7 +201,7 @@ TEST_F(Map, SeveralSessionsGrowSideBySide) {
   }
   // Not in the order in which they began.
   for (const std::uint64_t batch : {0U, 1U, 2U, 3U}) {
-    for (const std::uint64_t robot : {2U, 0U, 1U}) {
+    for (const std::size_t robot : {2U, 0U, 1U}) {
       if (robot == 2 && batch == 3) continue;
       test::save_sample(map, ids[robot], batch * 11, 10, {}, robot * room + batch * 10);
     }
@@ -221,7 +222,8 @@ TEST_F(Map, SeveralSessionsGrowSideBySide) {
   const std::string before = content(map);
   const auto refused = [&](std::int64_t session, std::uint64_t first, std::uint64_t end) {
     const std::array<sqlite::PlaceRecord, 2> records{{{first, 0, 0}, {end, 1, 0}}};
-    const std::vector<std::byte> bytes(2 * test::sample_form().place_bytes);
+    const std::vector<std::byte> bytes(2 *
+                                       static_cast<std::size_t>(test::sample_form().place_bytes));
     EXPECT_THROW(map.save(session, {.records = records, .places = bytes}), std::invalid_argument)
         << session << ": " << first << ", " << end;
   };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t frames_at_once = MatcherConfig::most_frames_at_once;
 
-MatcherConfig config_of(std::size_t ds, Arithmetic arithmetic) {
+MatcherConfig matrix_config(std::size_t ds, Arithmetic arithmetic) {
   MatcherConfig config;
   config.arithmetic = arithmetic;
   config.candidates = Candidates::all;
@@ -100,8 +100,8 @@ void match_all(Detector& detector, const Drive& drive) {
 
 void time_matrix(const Capacity& size, std::size_t ds, const PeerMatrices& peers,
                  std::size_t rounds, std::vector<Contender>& timed) {
-  const MatcherConfig small = config_of(ds, Arithmetic::int8);
-  const MatcherConfig exact = config_of(ds, Arithmetic::float32);
+  const MatcherConfig small = matrix_config(ds, Arithmetic::int8);
+  const MatcherConfig exact = matrix_config(ds, Arithmetic::float32);
   const std::uint64_t drive_bytes =
       std::uint64_t{size.places} * padded_size(size.descriptor_size) * sizeof(float);
   const std::uint64_t bytes = Matched::bytes_needed(small, size) +

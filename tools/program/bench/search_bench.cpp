@@ -20,7 +20,7 @@ namespace {
 // Differences cost nothing here: short descriptors will do.
 constexpr std::size_t descriptor_size = 64;
 
-MatcherConfig config_of(std::size_t ds, Arithmetic arithmetic) {
+MatcherConfig search_config(std::size_t ds, Arithmetic arithmetic) {
   MatcherConfig config;
   config.candidates = Candidates::all;
   config.sequence_length = ds;
@@ -42,7 +42,7 @@ PlaceMap synthetic_map(const MatcherConfig& config, std::size_t places) {
 /// A window of differences and what searches it.
 struct Window {
   Window(std::size_t ds, std::size_t places, Arithmetic arithmetic)
-      : config(config_of(ds, arithmetic)),
+      : config(search_config(ds, arithmetic)),
         map(synthetic_map(config, places)),
         memory(needed(), {}),
         arena(memory.span()),
