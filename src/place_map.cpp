@@ -34,11 +34,13 @@ std::vector<BufferSize> PlaceMap::plan(const MatcherConfig& config, const Capaci
 }
 
 PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity,
-                   std::span<std::byte> memory)
-    : PlaceMap(config, capacity, ArenaMemory(bytes_needed(config, capacity), memory)) {}
+                   std::span<std::byte> memory, bool zeroed)
+    : PlaceMap(config, capacity, ArenaMemory(bytes_needed(config, capacity), memory),
+               zeroed && !memory.empty()) {}
 
-PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory)
-    : PlaceMap(Arena(memory.span()), config, capacity, std::move(memory)) {}
+PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory,
+                   bool zeroed)
+    : PlaceMap(Arena(memory.span(), zeroed), config, capacity, std::move(memory)) {}
 
 PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
                    ArenaMemory&& memory)

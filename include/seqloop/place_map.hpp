@@ -29,8 +29,11 @@ class PlaceMap {
 
   /// @param config what the detector will be given: it says in what form places are kept
   /// @param memory [bytes_needed(config, capacity)] aligned to Arena::alignment; empty: own memory
+  /// @param zeroed whether that memory is known to be zero, as the system's new pages are: then it
+  ///   is not written to here, and a page need not be there before a place is put in it
   /// Errors: SetupError, all faults at once.
-  PlaceMap(const MatcherConfig& config, const Capacity& capacity, std::span<std::byte> memory = {});
+  PlaceMap(const MatcherConfig& config, const Capacity& capacity, std::span<std::byte> memory = {},
+           bool zeroed = false);
 
   /// Places that are added from here on are of another session: no line runs from one session into
   /// another. The first need not be begun. A detector that adds its drive begins one for it.
@@ -144,7 +147,8 @@ class PlaceMap {
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
  private:
-  PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory);
+  PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaMemory&& memory,
+           bool zeroed);
   PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
            ArenaMemory&& memory);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `plan` says against what the process really takes.
+#include <algorithm>
 #include <deque>
 
 #include "core/matcher.hpp"
@@ -46,6 +47,15 @@ TEST(Memory, ThePlanIsWhatTheProcessGrowsBy) {
       EXPECT_NEAR(stepped, built, slack) << "every page is there before the first step";
     }
   }
+}
+
+TEST(Memory, ThatIsKnownToBeZeroIsNotWrittenTo) {
+  const ArenaMemory memory(64, {});
+  std::ranges::fill(memory.span(), std::byte{7});
+  Arena as_it_is(memory.span(), true);
+  EXPECT_EQ(as_it_is.take<std::uint8_t>("bytes", 64).back(), 7);
+  Arena zeroed(memory.span());
+  EXPECT_EQ(zeroed.take<std::uint8_t>("bytes", 64).back(), 0);
 }
 
 TEST(Memory, MoreThanA32BitSystemAddressesIsPlannedToTheByteAndRefused) {

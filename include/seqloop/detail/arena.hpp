@@ -29,7 +29,7 @@ struct BufferSize {
 /// Hands out the one piece of memory that a component lives in, front to back, and never takes any
 /// back. The same calls run in two ways, so that a plan cannot drift from what is really used:
 /// measuring (each buffer is written down, none exists) and taking (each buffer is zeroed, which
-/// also makes its pages resident before the first frame).
+/// also makes its pages resident before the first frame; unless the caller knows that it is zero).
 class Arena {
  public:
   /// Buffers start on a cache line, so that no two share one and SIMD loads are aligned.
@@ -39,7 +39,9 @@ class Arena {
   explicit Arena(std::vector<BufferSize>& plan) noexcept : plan_(&plan) {}
 
   /// Hands out `memory`, which must be aligned to `alignment` and large enough.
-  explicit Arena(std::span<std::byte> memory) noexcept : rest_(memory) {}
+  /// @param zeroed whether it is zero: then nothing is written to it
+  explicit Arena(std::span<std::byte> memory, bool zeroed = false) noexcept
+      : rest_(memory), zeroed_(zeroed) {}
 
   [[nodiscard]] bool measuring() const noexcept { return plan_ != nullptr; }
 
@@ -58,7 +60,9 @@ class Arena {
     // By way of void: what lies there is aligned, which the compiler cannot know.
     T* first = static_cast<T*>(static_cast<void*>(rest_.data()));
     const auto taken = static_cast<std::size_t>(count);
-    std::uninitialized_value_construct_n(first, taken);
+    if (!zeroed_ || !std::is_trivially_default_constructible_v<T>) {
+      std::uninitialized_value_construct_n(first, taken);
+    }
     rest_ = rest_.subspan(static_cast<std::size_t>(bytes));
     return {first, taken};
   }
@@ -66,6 +70,7 @@ class Arena {
  private:
   std::vector<BufferSize>* plan_ = nullptr;
   std::span<std::byte> rest_;
+  bool zeroed_ = false;
 };
 
 /// Memory for an arena: the caller's when it is given, own otherwise. Taken once, freed at the end.

@@ -90,7 +90,7 @@ void drop(const fs::path& file) {
 struct Opened {
   explicit Opened(const Capacity& capacity)
       : memory(PlaceMap::bytes_needed(MatcherConfig{}, capacity)),
-        map(MatcherConfig{}, capacity, memory.span()) {}
+        map(MatcherConfig{}, capacity, memory.span(), true) {}
 
   live::TouchedMemory memory;
   PlaceMap map;

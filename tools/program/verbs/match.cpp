@@ -94,7 +94,7 @@ void match(const MatchSettings& settings, Faults faults) {
               : Capacity{reference ? reference->rows : query->rows, query->columns};
   suit_slice(config, settings.matcher, capacity.places);
   live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
-  PlaceMap map(config, capacity, memory.span());
+  PlaceMap map(config, capacity, memory.span(), true);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();

@@ -122,7 +122,7 @@ void run(const RunSettings& settings, Faults faults) {
   live::TouchedMemory memory = with_room(setup, [&] {
     return live::TouchedMemory(PlaceMap::bytes_needed(setup.config, setup.capacity()));
   });
-  PlaceMap map(setup.config, setup.capacity(), memory.span());
+  PlaceMap map(setup.config, setup.capacity(), memory.span(), true);
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     const auto look = [&](const Frame& frame) {
