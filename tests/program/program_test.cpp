@@ -93,7 +93,7 @@ TEST_F(Run, BenchTimesEveryPartOfAStepByEveryContender) {
       {"step", methods},
       {"loop", {methods[0], methods[1]}},
       {"search", {"seqloop-int8", "seqloop-float", "plain-float"}},
-      {"matrix", {"seqloop-int8-with-matches"}}};
+      {"matrix", {"seqloop-int8-with-matches", "seqloop-float-with-matches", "seqloop-float"}}};
   for (const auto& [what, contenders] : right) {
     const nlohmann::json rows = nlohmann::json::parse(
         expect_done("bench --json --n 150 --d 30 --ds 10 --rounds 7 --only " + what).out);
