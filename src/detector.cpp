@@ -154,7 +154,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
     report.match = answers.back().match;
   }
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
-    report.now = Belief{static_cast<std::size_t>(map_->order().number(likeliest->row)),
+    report.now = Belief{map_->order().number(likeliest->row),
                         static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
                         static_cast<float>(belief_.new_place())};
   }
@@ -365,9 +365,7 @@ void Detector::decide(FrameReport& report, const std::optional<BestRow>& best) c
   }
   const std::size_t line = search_.line(best->row);
   const auto ahead = static_cast<std::size_t>(trajectories_.offsets(line).back());
-  const auto number = [&](std::size_t row) {
-    return static_cast<std::size_t>(map_->order().number(row));
-  };
+  const auto number = [&](std::size_t row) { return map_->order().number(row); };
   report.match = Match{number(best->row),
                        static_cast<float>(best->score),
                        static_cast<float>(best->uniqueness),

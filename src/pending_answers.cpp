@@ -202,7 +202,7 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& wai
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
   answer.gate = sure ? Gate::match : is_new ? Gate::new_place : Gate::unsure;
   // The frame is a place too, unless the map was full.
-  constexpr float likely = 0.9F;
+  constexpr auto likely = static_cast<float>(PlaceMap::likely);
   if (!grows_ || answer.probability < likely || waiting.row >= map.size()) return;
   const std::size_t row = map.order().row_of_frame(waiting.frame);
   if (row < map.size() && map.order().frame(row) == waiting.frame) map.link(row, waiting.row);
@@ -213,10 +213,9 @@ std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,
   const Waiting& waiting = at(frame);
   if (waiting.frame != frame || !waiting.believed) return std::nullopt;
   for (const FoundLine& line : lines_in(slot_of(frame)).first(waiting.lines)) {
-    constexpr std::size_t beside = 10;
     const std::size_t off = map.order().apart(line.row, waiting.row);
     const bool other_visit =
-        off > beside && line.row < map.size() && map.same_place(line.row, waiting.row);
+        off > PlaceMap::beside && line.row < map.size() && map.same_place(line.row, waiting.row);
     if (off <= own || other_visit) return line;
   }
   return std::nullopt;
@@ -259,7 +258,7 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
     const std::int64_t there =
         std::clamp(static_cast<std::int64_t>(row) + by, static_cast<std::int64_t>(session.first),
                    static_cast<std::int64_t>(session.last) - 1);
-    return static_cast<std::size_t>(order.number(static_cast<std::size_t>(there)));
+    return order.number(static_cast<std::size_t>(there));
   };
   // The line through the frame itself, or the nearest one that reaches it; one whose window lies on
   // the trace from end to end, if there is any. Otherwise, and where hardly anything changes, rows

@@ -14,9 +14,6 @@ namespace {
 // Rows among which the one that is missed least goes, each time a full map thins out.
 constexpr std::size_t thinned_among = 64;
 
-// Between two rows that are linked, so near each other, all are.
-constexpr std::size_t most_between = 40;
-
 /// Whether places are linked to those that they are visits of: a map of one session that does not
 /// change has no visits.
 bool links(const MatcherConfig& config, const Capacity& capacity) {

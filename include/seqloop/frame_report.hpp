@@ -32,16 +32,16 @@ inline constexpr std::size_t gates = 9;
 struct Match {
   /// The place at the centre column, by its number: places are counted from 0 as they are added,
   /// those that a full map forgets too.
-  std::size_t place = 0;
+  std::uint64_t place = 0;
   float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
   /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
   /// full search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
-  double velocity = 0.0;  ///< rows a frame; NaN for single frames
-  std::size_t head = 0;   ///< the place at the newest column
+  double velocity = 0.0;   ///< rows a frame; NaN for single frames
+  std::uint64_t head = 0;  ///< the place at the newest column
   /// `Decision::uniqueness`: the place of that runner-up; none where one of an earlier frame, or
   /// nothing, stood in.
-  std::optional<std::size_t> runner_up = std::nullopt;
+  std::optional<std::uint64_t> runner_up = std::nullopt;
 };
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.
@@ -67,7 +67,7 @@ struct Answer {
 
 /// Where the robot is believed to be at the newest frame, by what has been seen so far.
 struct Belief {
-  std::size_t place = 0;     ///< the likeliest
+  std::uint64_t place = 0;   ///< the likeliest
   float probability = 0.0F;  ///< that it is there, 0 .. 1
   float new_place = 1.0F;    ///< that it is somewhere the map does not know, 0 .. 1
 };

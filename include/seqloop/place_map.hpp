@@ -109,10 +109,19 @@ class PlaceMap {
   Taken take(const DescriptorRows& queries, std::size_t query, std::uint64_t frame,
              std::size_t keep) noexcept;
 
+  /// Rows so near each other are one place.
+  static constexpr std::uint64_t beside = 10;
+
+  /// From this probability on a frame is taken for a visit of the place that it was at.
+  static constexpr double likely = 0.9;
+
+  /// Between two rows that are linked, so near each other, all are.
+  static constexpr std::size_t most_between = 40;
+
   /// Two rows are visits of one place. Rows between this one and the last that was linked are too,
-  /// where both lie close together. A detector that decides by probability links what it finds, at
-  /// most `patience` frames and as many rows later.
-  /// Work: as many rows as lie between, 40 at most. Allocates: never.
+  /// where both lie close together. A detector that decides by probability links what is `likely`,
+  /// at most `patience` frames and as many rows later. Work: as many rows as lie between,
+  /// `most_between` at most. Allocates: never.
   void link(std::size_t row, std::size_t earlier) noexcept;
 
   /// The number of the first place that this one is a visit of; its own where it was not linked.
@@ -151,8 +160,6 @@ class PlaceMap {
            bool zeroed);
   PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
            ArenaMemory&& memory);
-
-  static constexpr std::uint64_t beside = 10;  // rows so near each other are one place
 
   [[nodiscard]] bool same_first_visit(std::size_t a, std::size_t b) const noexcept;
   [[nodiscard]] bool fits(std::span<const float> descriptor) const noexcept;

@@ -181,8 +181,9 @@ Found carry_about(const MatcherConfig& config, double speed, bool told) {
     for (std::size_t frame = 0; frame < stay; ++frame) {
       const std::size_t row = begin + static_cast<std::size_t>(static_cast<double>(frame) * speed);
       const FrameReport report = detector.step(seen_again()[row]);
-      const std::size_t head = report.match ? report.match->head : places * 2;
-      const bool right = std::max(head, row) - std::min(head, row) <= 2;
+      const std::uint64_t head = report.match ? report.match->head : places * 2;
+      const bool right =
+          std::max<std::uint64_t>(head, row) - std::min<std::uint64_t>(head, row) <= 2;
       if (!right) after = frame + 1;
     }
     if (after == stay) {

@@ -141,7 +141,7 @@ TEST_P(FullMaps, ThinningKeepsTheWayAndDropsTheHalts) {
     for (const Answer& answer : due) {
       if (answer.gate != Gate::match) continue;
       ++answers;
-      const std::size_t found = drive.way[answer.match->place];
+      const std::size_t found = drive.way[static_cast<std::size_t>(answer.match->place)];
       const std::size_t truth = drive.way[static_cast<std::size_t>(answer.frame)];
       right += std::max(found, truth) - std::min(found, truth) <= 2;
     }

@@ -65,11 +65,11 @@ std::optional<ShownDrive::Scored> ShownDrive::score(std::int64_t row) const {
   return best;
 }
 
-std::size_t ShownDrive::number(std::int64_t row) const {
-  return static_cast<std::size_t>(map_.order().number(static_cast<std::size_t>(row)));
+std::uint64_t ShownDrive::number(std::int64_t row) const {
+  return map_.order().number(static_cast<std::size_t>(row));
 }
 
-std::optional<std::int64_t> ShownDrive::row_of(std::size_t number) const {
+std::optional<std::int64_t> ShownDrive::row_of(std::uint64_t number) const {
   for (std::int64_t row = 0; row < static_cast<std::int64_t>(map_.size()); ++row) {
     if (this->number(row) == number) return row;
   }

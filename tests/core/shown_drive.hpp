@@ -36,10 +36,10 @@ class ShownDrive {
   [[nodiscard]] std::optional<Scored> score(std::int64_t row) const;
 
   /// The number of the place in a row.
-  [[nodiscard]] std::size_t number(std::int64_t row) const;
+  [[nodiscard]] std::uint64_t number(std::int64_t row) const;
 
   /// The row of the place with a number.
-  [[nodiscard]] std::optional<std::int64_t> row_of(std::size_t number) const;
+  [[nodiscard]] std::optional<std::int64_t> row_of(std::uint64_t number) const;
 
  private:
   [[nodiscard]] const Forms& place(std::int64_t row) const;

@@ -71,7 +71,7 @@ struct Fleet {
   const Vectors& second;  // the other's
 
   /// What stands for a place, whichever session is first.
-  static std::string name(const Vectors& robot, std::size_t frame) {
+  static std::string name(const Vectors& robot, std::uint64_t frame) {
     return std::to_string(robot.front().front()) + "/" + std::to_string(frame);
   }
 

@@ -146,8 +146,7 @@ class Fleet::Impl {
 
   /// As within a map, for later frames of all.
   [[nodiscard]] static bool likely(const Answer& answer) noexcept {
-    constexpr float enough = 0.9F;
-    return answer.match && answer.probability >= enough;
+    return answer.match && answer.probability >= static_cast<float>(PlaceMap::likely);
   }
 
   void close(std::span<const Answer> answers) noexcept {
@@ -160,7 +159,7 @@ class Fleet::Impl {
       const Others::Names& names = talk_.names(place.session);
       OtherLoop& loop = loops_.emplace_back();
       loop.answer = answer;
-      loop.answer.match->place = loop.answer.match->head = static_cast<std::size_t>(place.frame);
+      loop.answer.match->place = loop.answer.match->head = place.frame;
       loop.robot.assign({names.robot});
       loop.session.assign({names.session});
     }

@@ -11,6 +11,7 @@
 #include "program/fleet/place_number.hpp"
 #include "program/fleet/round_time.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/place_map.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -25,9 +26,6 @@ constexpr std::size_t most_waiting = 16'384;
 
 // Links of a place, on average: what many robots tell is bounded.
 constexpr std::size_t links_a_place = 8;
-
-// A robot tells it from this probability on.
-constexpr double likely = 0.9;
 
 std::uint64_t number_of(std::int64_t session, std::uint64_t frame) {
   return place_number(static_cast<std::uint64_t>(session), frame);
@@ -146,7 +144,7 @@ void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) 
     const std::uint64_t number = number_of(session.id, place.frame);
     const std::uint64_t other = number_of(begin(same->visited).id, place.visit->frame);
     if (!links_.emplace(number, other).second) return;
-    session.links.push_back({session.id, place.frame, number, other, likely});
+    session.links.push_back({session.id, place.frame, number, other, PlaceMap::likely});
     ++waiting_;
     return;
   }

@@ -5,13 +5,6 @@
 #include <utility>
 
 namespace seqloop::program {
-namespace {
-
-// As within a map: between two places that are linked, so near each other, all are.
-constexpr std::uint64_t most_between = 40;
-
-}  // namespace
-
 SamePlaces::SamePlaces(PlaceMap& map, std::uint64_t away)
     : map_(&map), away_(away), next_(map.capacity()) {}
 
@@ -47,7 +40,7 @@ void SamePlaces::join(std::uint64_t place, std::uint64_t other, Told& told) noex
   join(place, other);
   const Told before = std::exchange(told, {place, other});
   const std::uint64_t places = place - before.place;
-  if (place <= before.place || places > most_between || other < before.other ||
+  if (place <= before.place || places > PlaceMap::most_between || other < before.other ||
       other - before.other > 2 * places ||
       order.session_of_number(before.other) != order.session_of_number(other)) {
     return;

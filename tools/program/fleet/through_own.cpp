@@ -8,9 +8,6 @@
 namespace seqloop::program {
 namespace {
 
-// Rows that are one place, as within a map.
-constexpr std::size_t beside = 10;
-
 /// Frames back from the newest that an answer may be about.
 std::size_t reach(const MatcherConfig& config) {
   return static_cast<std::size_t>(config.patience) + config.sequence_length + 2;
@@ -116,7 +113,7 @@ std::optional<ThroughOwn::Known> ThroughOwn::known(std::optional<std::size_t> ro
   const PlaceOrder& order = own_->order();
   const auto near = [&](std::size_t middle) -> std::optional<Known> {
     const CandidateRun session = order.around(middle);
-    for (std::size_t by = 0; by <= beside; ++by) {
+    for (std::size_t by = 0; by <= PlaceMap::beside; ++by) {
       for (const std::size_t at : {middle - by, middle + by}) {
         // Below 0, too: then it is a very large number.
         if (at < session.first || at >= session.last) continue;
@@ -125,7 +122,7 @@ std::optional<ThroughOwn::Known> ThroughOwn::known(std::optional<std::size_t> ro
         const std::uint64_t frame = frame_of(place.other);
         const std::uint64_t there =
             at > middle ? frame - std::min<std::uint64_t>(frame, by) : frame + by;
-        place.other = static_cast<std::size_t>(place_number(session_of(place.other), there));
+        place.other = place_number(session_of(place.other), there);
         return place;
       }
     }

@@ -53,7 +53,7 @@ class ThroughOwn {
   /// An own place that is another robot's.
   struct Known {
     std::uint64_t number = none;  // of the own place: its slot may get another
-    std::size_t other = 0;        // number
+    std::uint64_t other = 0;      // number
     float probability = 0.0F;
   };
 

@@ -97,7 +97,7 @@ void LoopOutputs::add(std::span<const Answer> answers) {
       continue;
     }
     loops_.push_back(answer);
-    loops_.back().match->place = static_cast<std::size_t>(*frame);
+    loops_.back().match->place = *frame;
   }
   if (topic_.empty()) graph_->add(std::exchange(loops_, {}));
 }

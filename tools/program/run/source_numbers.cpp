@@ -4,7 +4,7 @@
 namespace seqloop::program {
 namespace {
 
-/// A number as an index. On 32-bit systems a report's places wrap after 4.5 years at 30 frames/s.
+/// A number that is an index.
 std::size_t at(std::uint64_t number) noexcept { return static_cast<std::size_t>(number); }
 
 /// Frames back from the newest that an answer may be about: those that wait, and as many more as
@@ -56,19 +56,19 @@ std::uint64_t SourceNumbers::frame(std::uint64_t counted) const noexcept {
   return recent_[at(counted % recent_.size())];
 }
 
-std::size_t SourceNumbers::place(std::size_t number) const noexcept {
+std::uint64_t SourceNumbers::place(std::uint64_t number) const noexcept {
   // The first row of this number or a higher one.
   std::size_t first = 0;
   std::size_t end = map_->size();
   while (first < end) {
     const std::size_t middle = first + (end - first) / 2;
-    if (at(map_->order().number(middle)) < number) {
+    if (map_->order().number(middle) < number) {
       first = middle + 1;
     } else {
       end = middle;
     }
   }
-  return first == map_->size() ? number : at(places_[map_->order().slot(first)]);
+  return first == map_->size() ? number : places_[map_->order().slot(first)];
 }
 
 void SourceNumbers::rename(std::optional<Match>& match) const noexcept {

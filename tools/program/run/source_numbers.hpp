@@ -33,7 +33,7 @@ class SourceNumbers {
  private:
   void note(std::uint64_t newest, std::uint64_t index) noexcept;
   [[nodiscard]] std::uint64_t frame(std::uint64_t counted) const noexcept;
-  [[nodiscard]] std::size_t place(std::size_t number) const noexcept;
+  [[nodiscard]] std::uint64_t place(std::uint64_t number) const noexcept;
   void rename(std::optional<Match>& match) const noexcept;
 
   const PlaceMap* map_;

@@ -45,11 +45,11 @@ Answer answer_of(const Json& json) {
   answer.probability = number(json, "probability", undefined);
   if (json.at("match").is_null()) return answer;
   Match& match = answer.match.emplace();
-  match.place = json.at("match").get<std::size_t>();
+  match.place = json.at("match").get<std::uint64_t>();
   match.score = number(json, "score", undefined);
   match.uniqueness = number(json, "uniqueness", undefined);
   match.velocity = number(json, "velocity", std::nan(""));
-  match.head = number(json, "head", std::size_t{0});
+  match.head = number(json, "head", std::uint64_t{0});
   return answer;
 }
 

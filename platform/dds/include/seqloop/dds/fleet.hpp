@@ -37,7 +37,7 @@ struct FleetStatistics {
   std::span<const double> variance;  ///< [D]
 };
 
-/// A place that a robot has saved.
+/// A place of a robot.
 struct FleetPlace {
   std::int64_t session = 0;  ///< when it began, in nanoseconds since 1970: its name for ever
   std::uint64_t frame = 0;   ///< of the session
