@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: MIT
 """Robots on network namespaces with delay, loss and partitions: one recorded drive, cut in overlapping parts.
 
-Usage: fleet_net.py SEQLOOP DESCRIPTORS.npy ROBOTS [FRAMES]
+Usage: fleet_net.py SEQLOOP DESCRIPTORS.npy ROBOTS [--frames N] [--conditions N] [--flags "FLAGS"]
 
-Prints what was found between robots against one process that has all of it, bytes and packets a place, how long
+FRAMES are those of a part; FLAGS are given to each robot; of the conditions below the first N are tried. Prints what was found between robots against one process that has all of it, bytes and packets a place, how long
 until others know a place, and what the loop pays. Needs root, `ip netns` and `tc`; exit code 77 without.
 Delay and loss are netem's, or those of slow_network.py.
 """
+import argparse
 import json
 import os
 import pathlib
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -189,10 +192,15 @@ def misses(runs: list[Robot]) -> str:
     return f"{missed} of {len(lines)} frames missed, {dropped} dropped, match p50 {match[0]:.2f} p99 {match[1]:.2f} ms"
 
 
-def drive_all(seqloop: str, work: pathlib.Path, network: Network, robots: int, fleet: bool, cut_off: bool) -> list:
+def told(runs: list[Robot]) -> int:
+    return sum(int(re.search(r"(\d+) places were told", pathlib.Path(run.said.name).read_text())[1]) for run in runs)
+
+
+def drive_all(seqloop: str, work: pathlib.Path, network: Network, robots: int, fleet: bool, cut_off: bool,
+              flags: list[str]) -> list:
     for old in work.glob("?.seqloop*"):
         old.unlink()
-    runs = [Robot(seqloop, work, robot, network.names[robot], fleet) for robot in range(robots)]
+    runs = [Robot(seqloop, work, robot, network.names[robot], fleet, *flags) for robot in range(robots)]
     if cut_off:
         time.sleep(6)
         network.cut_off(1, True)
@@ -203,7 +211,8 @@ def drive_all(seqloop: str, work: pathlib.Path, network: Network, robots: int, f
     return runs
 
 
-def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib.Path) -> None:
+def main(seqloop: str, descriptors: str, robots: int, frames: int, tried: int, flags: list[str],
+         work: pathlib.Path) -> None:
     cut(numpy.load(descriptors), robots, frames, work)
     network = Network(robots)
     try:
@@ -212,12 +221,12 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
                       ("50 ms delay, 5 % lost", True, ("delay", "50ms", "10ms", "loss", "5%"), False),
                       ("the same, one cut off from 6 to 12 s", True, ("delay", "50ms", "10ms", "loss", "5%"), True)]
         whole = None
-        for name, fleet, netem, cut_off in conditions:
+        for name, fleet, netem, cut_off in conditions[:tried]:
             if netem and not isinstance(network, SlowNetwork) and not network.worsen(*netem):
                 network.remove()
                 network = SlowNetwork(robots, *SLOW)
             before = [network.sent(robot) for robot in range(robots)]
-            runs = drive_all(seqloop, work, network, robots, fleet, cut_off)
+            runs = drive_all(seqloop, work, network, robots, fleet, cut_off, flags)
             print(f"{name}: {misses(runs)}")
             if not fleet:
                 whole = alone(seqloop, work, robots)
@@ -226,7 +235,8 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
             octets = sum(now[0] - then[0] for now, then in zip(after, before))
             packets = sum(now[1] - then[1] for now, then in zip(after, before))
             places = sum(line["newest"] is not None for run in runs for _, line in run.lines)
-            print(f"  {octets / places:.0f} bytes, {packets / places:.2f} packets a place, of {robots} robots")
+            print(f"  {octets / places:.0f} bytes, {packets / places:.2f} packets a frame, of {robots} robots; "
+                  f"{told(runs)} places of {places} frames were told")
             found, possible, accepted = 0, 0, 0
             for robot, run in enumerate(runs):
                 mine = {answer["frame"] for _, line in run.lines for answer in line["fleet"]
@@ -257,7 +267,15 @@ def main(seqloop: str, descriptors: str, robots: int, frames: int, work: pathlib
 
 
 if __name__ == "__main__":
+    words = argparse.ArgumentParser(usage=__doc__)
+    words.add_argument("seqloop")
+    words.add_argument("descriptors")
+    words.add_argument("robots", type=int)
+    words.add_argument("--frames", type=int, default=1000)
+    words.add_argument("--conditions", type=int, default=5)
+    words.add_argument("--flags", default="")
+    asked = words.parse_args()
     ask_for_namespaces()
     with tempfile.TemporaryDirectory() as folder:
-        main(sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4]) if len(sys.argv) > 4 else 1000,
+        main(asked.seqloop, asked.descriptors, asked.robots, asked.frames, asked.conditions, shlex.split(asked.flags),
              pathlib.Path(folder))

@@ -19,7 +19,7 @@ class Participant;
 
 namespace seqloop::program {
 
-/// A robot among others: tells them the places that it saves, and finds loops with theirs.
+/// A robot among others: tells them its places, and finds loops with theirs.
 ///
 /// What others tell is heard by a thread of its own, and comes into a map of its own, in which each
 /// of their sessions is one: the drive is localised in it. Its own sessions and those of others do

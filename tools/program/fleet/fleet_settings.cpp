@@ -22,7 +22,7 @@ bool parse_tell(std::string_view text) {
 void add_fleet_options(OptionTable& options, FleetSettings& settings) {
   options.section("Map", Shown::in_help_all);
   options.text("fleet", settings.name,
-               "tell the robots of this fleet the places that are saved, over DDS, and find loops "
+               "tell the robots of this fleet what becomes a place, over DDS, and find loops "
                "with theirs; with --map [alone]");
   options.count("fleet-places", settings.places,
                 "room for places of other robots, beside --max-places [20000]");
@@ -44,7 +44,8 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
     if (settings.kbps != 0.0) faults.push_back({"fleet-kbps", "nothing is told", "--fleet NAME"});
     return;
   }
-  if (!map) faults.push_back({"fleet", "places are told as they are saved", "add --map FILE"});
+  if (!map)
+    faults.push_back({"fleet", "what is told are places of a map that lasts", "add --map FILE"});
   if (enhance) {
     faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
                       "leave one of them out"});

@@ -45,16 +45,23 @@ struct Ending : std::exception {};
 FleetTalk::FleetTalk(const FleetSettings& settings, const dds::Participant& participant,
                      LastingMap& map)
     : map_(&map),
-      saved_(std::make_shared<Saved>(settings.places)),
+      learnt_(std::make_shared<Learnt>()),
       about_(about_of(settings, map.form())),
       earlier_(map.begun()),
       wire_(participant, settings.name, settings.places),
       others_(about_, earlier_, settings.places),
       heard_(queued, map.form().place_bytes),
       allowance_(settings.kbps),
+      room_(settings.places),
       novel_(settings.novel),
       thread_([this] { work(); }) {
-  map.when_saved([saved = saved_](const SavedPlace& place) { saved->keep(place); });
+  map.follow([learnt = learnt_](std::int64_t began_ns, const SessionStatistics& its) {
+    const std::scoped_lock lock(learnt->mutex);
+    learnt->statistics = {began_ns,
+                          its.frames,
+                          {its.mean.begin(), its.mean.end()},
+                          {its.variance.begin(), its.variance.end()}};
+  });
 }
 
 FleetTalk::~FleetTalk() { end(); }
@@ -62,27 +69,6 @@ FleetTalk::~FleetTalk() { end(); }
 void FleetTalk::end() {
   ending_ = true;
   if (thread_.joinable()) thread_.join();
-}
-
-/// The saving thread's side.
-void FleetTalk::Saved::keep(const SavedPlace& place) {
-  const std::scoped_lock lock(mutex);
-  if (place.statistics) {
-    const SessionStatistics& its = *place.statistics;
-    statistics = {place.began_ns,
-                  its.frames,
-                  {its.mean.begin(), its.mean.end()},
-                  {its.variance.begin(), its.variance.end()}};
-    return;
-  }
-  if (waiting.size() == room) {
-    waiting.pop_front();
-    ++untold;
-  }
-  session = place.session;
-  waiting.push_back({place, {place.bytes.begin(), place.bytes.end()}});
-  waiting.back().place.session = {};
-  waiting.back().place.bytes = {};
 }
 
 void FleetTalk::work() {
@@ -103,12 +89,10 @@ void FleetTalk::work() {
   const auto until = std::chrono::steady_clock::now() + patience_at_end;
   while (std::chrono::steady_clock::now() < until) {
     tell_newest();
-    {
-      const std::scoped_lock lock(saved_->mutex);
-      if (saved_->waiting.empty()) break;
-    }
+    if (waiting_.empty()) break;
     wire_.wait(round_time);
   }
+  tell_found();
   tell_statistics(1);
   const auto left = until - std::chrono::steady_clock::now();
   if (left > 0s && wire_.others() > 0) wire_.flush(left);
@@ -120,38 +104,45 @@ void FleetTalk::tell_earlier() {
     if (std::ranges::find(earlier_, place.began_ns) == earlier_.end()) return;
     while (!tell(place)) {
       if (ending_) throw Ending();
+      read_newest();
       hear();
       wire_.wait(round_time);
     }
-    if (told_ % said_every == 0) hear();
+    if (told_ % said_every != 0) return;
+    read_newest();
+    hear();
+  });
+}
+
+/// What the drive has added since the last time. It waits here, not in the map, which could not
+/// forget it.
+void FleetTalk::read_newest() {
+  map_->read_newest([this](const SavedPlace& place) {
+    if (waiting_.size() == room_) {
+      waiting_.pop_front();
+      ++untold_;
+    }
+    if (running_.empty()) running_ = place.session;
+    waiting_.push_back({place, {place.bytes.begin(), place.bytes.end()}});
+    waiting_.back().place.session = {};
+    waiting_.back().place.bytes = {};
   });
 }
 
 void FleetTalk::tell_newest() {
-  while (true) {
-    Waiting place;
-    {
-      const std::scoped_lock lock(saved_->mutex);
-      if (saved_->waiting.empty()) return;
-      const SavedPlace& next = saved_->waiting.front().place;
-      const std::optional<bool> novel = next.visits ? true : is_novel(next.frame);
-      if (!novel) return;
-      place = std::move(saved_->waiting.front());
-      saved_->waiting.pop_front();
-      if (!*novel) {
-        ++known_;
-        continue;
-      }
-      if (running_.empty()) running_ = saved_->session;
+  read_newest();
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    const Waiting& next = waiting_.front();
+    const std::optional<bool> novel = next.place.visits ? true : is_novel(next.place.frame);
+    if (!novel) return;
+    if (!*novel) {
+      ++known_;
+      continue;
     }
-    SavedPlace whole = place.place;
+    SavedPlace whole = next.place;
     whole.session = running_;
-    whole.bytes = place.bytes;
-    if (!tell(whole)) {
-      const std::scoped_lock lock(saved_->mutex);
-      saved_->waiting.push_front(std::move(place));
-      return;
-    }
+    whole.bytes = next.bytes;
+    if (!tell(whole)) return;
     if (whole.visits) continue;
     newest_told_ = {whole.began_ns, whole.frame};
     if (novel_) told_frames_.insert(whole.frame);
@@ -167,6 +158,8 @@ std::optional<bool> FleetTalk::is_novel(std::uint64_t frame) {
     if (!judged->loop) newest_novel_ = std::max(newest_novel_, judged->frame);
     judged_.pop();
   }
+  // Not every frame becomes a place.
+  loops_.erase(loops_.begin(), loops_.lower_bound(frame));
   const auto known = loops_.find(frame);
   if (known != loops_.end()) {
     const bool novel = !known->second;
@@ -209,8 +202,8 @@ void FleetTalk::tell_statistics(std::uint64_t places) {
   if (!newest_told_ || newest_told_->session != session_ || of_session_ < places) return;
   Statistics newest;
   {
-    const std::scoped_lock lock(saved_->mutex);
-    newest = saved_->statistics;
+    const std::scoped_lock lock(learnt_->mutex);
+    newest = learnt_->statistics;
   }
   if (newest.frames == 0 || newest.began_ns != session_) return;
   dds::FleetPlace none{.session = session_, .frame = newest_told_->frame};
@@ -293,9 +286,7 @@ std::optional<std::string> FleetTalk::news() {
 }
 
 FleetTalk::Counts FleetTalk::counts() {
-  const std::scoped_lock lock(saved_->mutex);
-  return {told_, known_, saved_->untold + saved_->waiting.size(), others_.places(),
-          others_.sessions()};
+  return {told_, known_, untold_ + waiting_.size(), others_.places(), others_.sessions()};
 }
 
 }  // namespace seqloop::program

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -94,21 +95,15 @@ class FleetTalk {
     std::vector<double> mean;
     std::vector<double> variance;
   };
-  /// What was saved; the thread that saves may outlive this object.
-  struct Saved {
-    explicit Saved(std::size_t places) : room(places) {}
-    void keep(const SavedPlace& place);
-
-    const std::size_t room;
+  /// The newest statistics; the thread that saves may outlive this object.
+  struct Learnt {
     std::mutex mutex;
-    std::deque<Waiting> waiting;
-    std::string session;    // the running one's name
-    Statistics statistics;  // the newest
-    std::uint64_t untold = 0;
+    Statistics statistics;
   };
 
   void work();
   void tell_earlier();
+  void read_newest();
   void tell_newest();
   [[nodiscard]] std::optional<bool> is_novel(std::uint64_t frame);
   void tell_found();
@@ -120,7 +115,7 @@ class FleetTalk {
   void pass_on(std::string line);
 
   LastingMap* map_;
-  std::shared_ptr<Saved> saved_;
+  std::shared_ptr<Learnt> learnt_;
   dds::FleetSession about_;
   std::vector<std::int64_t> earlier_;
   dds::Fleet wire_;
@@ -130,9 +125,12 @@ class FleetTalk {
   live::ReturnQueue<Judged, 1024> judged_;
 
   Allowance allowance_;  // the thread's, as what follows
+  std::size_t room_;     // for what waits
+  std::deque<Waiting> waiting_;
+  std::uint64_t untold_ = 0;
   std::string running_;  // name of the running session
   bool novel_;
-  std::unordered_map<std::uint64_t, bool> loops_;  // by frame, as far as it is not told yet
+  std::map<std::uint64_t, bool> loops_;  // by frame, as far as a place may come
   std::uint64_t newest_judged_ = 0;
   std::uint64_t newest_novel_ = 0;
   std::unordered_set<std::uint64_t> told_frames_;  // of the running session, where not all are

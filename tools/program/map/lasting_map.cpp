@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -98,7 +99,12 @@ class SqliteMap : public LastingMap {
     read_places(stored_.path(), read);
   }
 
-  void when_saved(SavedPlaceReader read) override { when_saved_ = std::move(read); }
+  void follow(StatisticsReader learnt) override { learnt_ = std::move(learnt); }
+
+  void read_newest(const SavedPlaceReader& read) override {
+    MapWriter* const writer = followed_.load(std::memory_order_acquire);
+    if (writer != nullptr) writer->read_newest(read);
+  }
 
   [[nodiscard]] Capacity capacity(std::size_t drive) const noexcept override {
     return stored_.capacity(drive);
@@ -113,7 +119,8 @@ class SqliteMap : public LastingMap {
     map_ = &map;
     if (stored_.read_only()) return;
     stored_.begin_session(method);
-    writer_.emplace(stored_, map, config, settings_, encode_, when_saved_);
+    writer_.emplace(stored_, map, config, settings_, encode_, learnt_);
+    followed_.store(&*writer_, std::memory_order_release);
   }
 
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
@@ -207,9 +214,10 @@ class SqliteMap : public LastingMap {
   StoredMap stored_;
   MapSettings settings_;
   JpegEncoder encode_;
-  SavedPlaceReader when_saved_;
+  StatisticsReader learnt_;
   const PlaceMap* map_ = nullptr;
   std::optional<MapWriter> writer_;
+  std::atomic<MapWriter*> followed_{nullptr};  // once it is there
 };
 
 }  // namespace

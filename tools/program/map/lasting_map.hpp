@@ -35,7 +35,7 @@ struct SessionStatistics {
   std::span<const double> variance;  ///< [D]
 };
 
-/// A place that is on the disk.
+/// A place, as the file has it.
 struct SavedPlace {
   std::int64_t began_ns = 0;  ///< when its session began, since 1970
   std::string_view session;
@@ -49,6 +49,9 @@ struct SavedPlace {
   std::optional<SessionStatistics> statistics = {};
 };
 using SavedPlaceReader = std::function<void(const SavedPlace&)>;
+
+/// By what the session that began then is standardised.
+using StatisticsReader = std::function<void(std::int64_t began_ns, const SessionStatistics&)>;
 
 /// A map in a file, for one run: loaded before it, saved while it goes.
 class LastingMap {
@@ -77,9 +80,15 @@ class LastingMap {
   /// All places of the file, as it is now. Any thread. Throws SetupError.
   virtual void read_saved(const SavedPlaceReader& read) const = 0;
 
-  /// To be called before `begin`. @param read told of each place of the drive once it is saved, by
-  ///   the thread that saves; does not throw, and does not wait
-  virtual void when_saved(SavedPlaceReader read) = 0;
+  /// Somebody follows the drive: to be called before `begin`. From then on `read_newest` is to be
+  /// called again and again, since a full map forgets no place before that.
+  /// @param learnt told of the drive's statistics each time that they are saved, by the thread that
+  ///   saves; does not throw, and does not wait
+  virtual void follow(StatisticsReader learnt) = 0;
+
+  /// The drive's places, and which are visits of another, that have come since the last call: as
+  /// they will be saved, whether or not the disk has them yet. For one thread, not the loop's.
+  virtual void read_newest(const SavedPlaceReader& read) = 0;
 
   /// The drive begins: from here on it is saved, unless the map is only read.
   /// @param map the detector's, which lives longer. Throws SetupError.

@@ -14,9 +14,6 @@ namespace {
 // Places that are saved at once: a batch is in memory twice.
 constexpr std::uint64_t most_at_once = 4096;
 
-// Rows between two that are linked are linked as well, up to this many.
-constexpr std::size_t most_between = 40;
-
 // Saving that takes longer is told.
 constexpr std::int64_t patience_ns = 2'000'000'000;
 
@@ -32,11 +29,11 @@ std::int64_t nanoseconds(double seconds) {
 }  // namespace
 
 MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
-                     const MapSettings& settings, JpegEncoder encode, SavedPlaceReader when_saved)
+                     const MapSettings& settings, JpegEncoder encode, StatisticsReader learnt)
     : stored_(&stored),
       map_(&map),
-      when_saved_(std::move(when_saved)),
-      settled_after_(config.patience + most_between + config.sequence_length),
+      learnt_(std::move(learnt)),
+      settled_after_(config.patience + PlaceMap::most_between + config.sequence_length),
       next_number_(map.order().next_number()),
       came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
             MatcherConfig::most_frames_at_once + 2),
@@ -45,7 +42,10 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
       linked_(map.capacity(), none),
       novel_(settings.novel),
       added_(map.capacity()),
-      links_(map.capacity()) {
+      links_(map.capacity()),
+      read_places_(learnt_ ? 0 : none),
+      read_links_(learnt_ ? 0 : none),
+      newest_(map.rows().saved_size()) {
   if (config.standardisation.on) {
     handed_.mean.resize(map.descriptor_size());
     handed_.variance.resize(map.descriptor_size());
@@ -81,9 +81,10 @@ void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t in
   add_places(image);
   if (counted_ > settled_after_) settle(counted_ - settled_after_);
   hand_over_statistics(detector);
-  const std::uint64_t unsaved =
-      places_noted_.load(std::memory_order_relaxed) - saved_places_.load(std::memory_order_acquire);
-  detector.keep_newest(static_cast<std::size_t>(unsaved));
+  const std::uint64_t done = std::min(saved_places_.load(std::memory_order_acquire),
+                                      read_places_.load(std::memory_order_acquire));
+  const std::uint64_t needed = places_noted_.load(std::memory_order_relaxed) - done;
+  detector.keep_newest(static_cast<std::size_t>(needed));
   frames_.store(counted_, std::memory_order_release);
 }
 
@@ -129,20 +130,21 @@ void MapWriter::settle(std::uint64_t end) noexcept {
   const PlaceOrder& order = map_->order();
   const std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
   std::uint64_t links = links_noted_.load(std::memory_order_relaxed);
-  const std::uint64_t saved = saved_links_.load(std::memory_order_acquire);
+  const std::uint64_t done = std::min(saved_links_.load(std::memory_order_acquire),
+                                      read_links_.load(std::memory_order_acquire));
   for (; settled_ < noted; ++settled_) {
     const Added& added = added_[static_cast<std::size_t>(settled_ % added_.size())];
     const auto row = order.row_of_number(added.record.number);
     if (row && order.frame(*row) >= end) break;
-    if (!row || links - saved == links_.size()) continue;
+    if (!row || links - done == links_.size()) continue;
     const Came& frame = came(order.frame(*row));
-    constexpr double likely = 0.9;
     // Of later drives' use, when all that followed is known: rows that are one place do not
     // compete.
     constexpr double enough_for_later = 0.5;
-    if (frame.probability >= likely) last_probability_ = frame.probability;
+    const bool likely = frame.probability >= PlaceMap::likely;
+    if (likely) last_probability_ = frame.probability;
     std::uint64_t first = map_->first_visit(*row);
-    double probability = frame.probability >= likely ? frame.probability : last_probability_;
+    double probability = likely ? frame.probability : last_probability_;
     if (first == added.record.number) {
       const auto other = order.row_of_number(frame.place);
       if (frame.probability < enough_for_later || !other) continue;
@@ -284,7 +286,6 @@ void MapWriter::save_once() {
   if (ready) batch.statistics = &handed_;
   batch.removed = removed_;
   stored_->file().save(stored_->session(), batch);
-  if (ready) handing_.store(Handing::asked, std::memory_order_release);
   number_after_ = number_after;
   if (thumbnails_) thumbnails_->saved(pictures.size());
   saved_places_.store(last, std::memory_order_release);
@@ -294,7 +295,37 @@ void MapWriter::save_once() {
     words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(said));
   }
   saved_frames_.store(frames, std::memory_order_release);
-  if (when_saved_) stored_->tell(batch, when_saved_);
+  if (!ready) return;
+  if (learnt_) {
+    learnt_(stored_->of_this_run().began_ns, {handed_.frames, handed_.mean, handed_.variance});
+  }
+  handing_.store(Handing::asked, std::memory_order_release);
+}
+
+void MapWriter::read_newest(const SavedPlaceReader& read) {
+  // The links first: their places are all noted then.
+  const std::uint64_t links = links_noted_.load(std::memory_order_acquire);
+  const std::uint64_t places = places_noted_.load(std::memory_order_acquire);
+  for (std::uint64_t at = read_places_.load(std::memory_order_relaxed); at < places; ++at) {
+    const Added& added = added_[static_cast<std::size_t>(at % added_.size())];
+    map_->rows().save(added.slot, newest_);
+    SavedPlace place = stored_->of_this_run();
+    place.number = added.record.number;
+    place.frame = added.record.frame;
+    place.time_ns = added.record.time_ns;
+    place.bytes = newest_;
+    read(place);
+  }
+  read_places_.store(places, std::memory_order_release);
+  for (std::uint64_t at = read_links_.load(std::memory_order_relaxed); at < links; ++at) {
+    const sqlite::SavedLink& link = links_[static_cast<std::size_t>(at % links_.size())];
+    SavedPlace place = stored_->of_this_run();
+    place.number = *link.place;
+    place.frame = link.frame;
+    place.visits = link.other;
+    read(place);
+  }
+  read_links_.store(links, std::memory_order_release);
 }
 
 std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const Answer> rest) {

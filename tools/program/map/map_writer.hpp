@@ -27,9 +27,9 @@ namespace seqloop::program {
 class MapWriter {
  public:
   /// All of them live longer. @param encode makes thumbnails; null: there are none
-  /// @param when_saved as `LastingMap::when_saved`; empty: nobody is told
+  /// @param learnt as `LastingMap::follow`; empty: nobody follows
   MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig& config,
-            const MapSettings& settings, JpegEncoder encode, SavedPlaceReader when_saved);
+            const MapSettings& settings, JpegEncoder encode, StatisticsReader learnt);
 
   MapWriter(const MapWriter&) = delete;
   MapWriter& operator=(const MapWriter&) = delete;
@@ -62,6 +62,9 @@ class MapWriter {
 
   /// Saves soon. From any thread but the loop's: it may wait. @return false once the drive is over
   bool save_now();
+
+  /// As `LastingMap::read_newest`. Work: D copies a place. Allocates: no.
+  void read_newest(const SavedPlaceReader& read);
 
   /// Keeps a person's word on an answer, likewise.
   bool judge(std::uint64_t frame, std::uint64_t place, Verdict verdict);
@@ -116,7 +119,7 @@ class MapWriter {
 
   StoredMap* stored_;
   const PlaceMap* map_;
-  SavedPlaceReader when_saved_;
+  StatisticsReader learnt_;
   std::uint64_t settled_after_;  // frames after which a place is linked to no other any more
 
   // Of the loop.
@@ -156,6 +159,11 @@ class MapWriter {
   std::vector<sqlite::PlaceRecord> records_;
   std::vector<sqlite::SavedLink> batch_links_;
   std::vector<std::uint64_t> removed_;
+
+  // Written by who follows; `none`: nobody does.
+  std::atomic<std::uint64_t> read_places_;
+  std::atomic<std::uint64_t> read_links_;
+  std::vector<std::byte> newest_;
 
   std::mutex mutex_;
   std::condition_variable wake_;

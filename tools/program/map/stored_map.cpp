@@ -140,30 +140,6 @@ void StoredMap::begin_session(const std::string& settings) {
   begun_.push_back(began);
 }
 
-void StoredMap::tell(const sqlite::MapBatch& batch, const SavedPlaceReader& read) const {
-  const std::int64_t began = begun_.back();
-  const std::string& name = names_.back();
-  const auto size = static_cast<std::size_t>(file_.form().place_bytes);
-  for (std::size_t i = 0; i < batch.records.size(); ++i) {
-    const sqlite::PlaceRecord& record = batch.records[i];
-    read({began,
-          name,
-          record.number,
-          record.frame,
-          record.time_ns,
-          batch.places.subspan(i * size, size),
-          {},
-          {}});
-  }
-  for (const sqlite::SavedLink& link : batch.links) {
-    if (link.place) read({began, name, *link.place, link.frame, 0, {}, link.other, {}});
-  }
-  if (batch.statistics == nullptr) return;
-  SavedPlace none{began, name};
-  none.statistics = {batch.statistics->frames, batch.statistics->mean, batch.statistics->variance};
-  read(none);
-}
-
 PlaceForm StoredMap::form() const {
   const sqlite::MapForm& form = file_.form();
   return {form.form, form.describer, static_cast<std::size_t>(form.descriptor_size),

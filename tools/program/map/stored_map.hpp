@@ -47,8 +47,8 @@ class StoredMap {
   /// When each session of the file began; of this run's, the last.
   [[nodiscard]] const std::vector<std::int64_t>& begun() const noexcept { return begun_; }
 
-  /// Tells of the places and links of this run's session that were saved at once.
-  void tell(const sqlite::MapBatch& batch, const SavedPlaceReader& read) const;
+  /// What all places of this run's session have in common; the rest is empty.
+  [[nodiscard]] SavedPlace of_this_run() const { return {begun_.back(), names_.back()}; }
 
   /// The name of a session, as the map counts them: those without places are not counted.
   [[nodiscard]] const std::string& name(std::size_t session) const noexcept {

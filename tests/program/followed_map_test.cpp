@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Who follows a drive has its places at once, whether or not the disk has them.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <map>
+#include <thread>
+
+#include "core/oracle.hpp"
+#include "program/map/lasting_map.hpp"
+#include "temporary_folder.hpp"
+
+namespace seqloop::program {
+namespace {
+
+constexpr std::size_t size = 40;
+
+/// A place, and which one it is a visit of.
+struct Read {
+  std::uint64_t frame = 0;
+  std::vector<std::byte> bytes;
+  std::optional<std::uint64_t> visits;
+};
+using Places = std::map<std::uint64_t, Read>;  // by number
+
+void add(Places& places, const SavedPlace& place) {
+  if (place.statistics) return;
+  if (place.visits) {
+    ASSERT_TRUE(places.contains(place.number)) << "a visit is told after its place";
+    places[place.number].visits = place.visits;
+    return;
+  }
+  ASSERT_FALSE(places.contains(place.number)) << place.number;
+  places[place.number] = {place.frame, {place.bytes.begin(), place.bytes.end()}, {}};
+}
+
+class FollowedMap : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    settings_.file = folder_.path() / "m.seqloop";
+    config_.use = Use::close_loops;
+    config_.full_map = FullMap::forget_oldest;
+    settings_.save_every_s = 3600.0;
+    settings_.thumbnails = false;
+  }
+
+  /// Drives three laps. @return frames that became no place
+  std::size_t drive(std::size_t room) {
+    map_ = open_map(settings_, config_, size, "test");
+    places_.emplace(config_, Capacity{room, size, 2});
+    map_->load(*places_);
+    map_->follow([this](std::int64_t, const SessionStatistics&) { ++learnt_; });
+    if (at_once_) {
+      follower_ = std::thread([this] {
+        while (!over_) read_newest();
+      });
+    }
+    map_->begin(*places_, config_, "test");
+    Detector detector(config_, *places_);
+    std::size_t full = 0;
+    std::uint64_t frame = 0;
+    for (unsigned lap = 0; lap < 3; ++lap) {
+      for (const auto& seen : oracle::drive(1, 200, size, 0.1F + 0.01F * static_cast<float>(lap))) {
+        const FrameReport report = detector.step(seen);
+        map_->note(detector, report.newest, 7 + frame, static_cast<double>(frame) / 10, {},
+                   report.answers);
+        full += report.map_full;
+        ++frame;
+      }
+    }
+    saved_ = map_->saved();
+    over_ = true;
+    if (follower_.joinable()) follower_.join();
+    EXPECT_EQ(map_->finish(detector, detector.finish()), std::nullopt);
+    return full;
+  }
+
+  void read_newest() {
+    map_->read_newest([this](const SavedPlace& place) { add(read_, place); });
+  }
+
+  MatcherConfig config_;
+  test::TemporaryFolder folder_;
+  MapSettings settings_;
+  std::unique_ptr<LastingMap> map_;
+  std::optional<PlaceMap> places_;
+  bool at_once_ = true;
+  std::atomic<bool> over_{false};
+  std::thread follower_;
+  Places read_;
+  std::uint64_t saved_ = 0;
+  std::atomic<int> learnt_{0};
+};
+
+TEST_F(FollowedMap, PlacesAreReadOnceAndAsTheyAreSaved) {
+  EXPECT_EQ(drive(600), 0U);
+  EXPECT_EQ(saved_, 0U) << "the disk had none of them";
+  EXPECT_EQ(read_.size(), 600U) << "and all were read";
+  read_newest();
+  EXPECT_GT(learnt_, 0);
+  Places saved;
+  map_->read_saved([&](const SavedPlace& place) { add(saved, place); });
+  ASSERT_EQ(read_.size(), saved.size());
+  std::size_t visits = 0;
+  for (const auto& [number, place] : saved) {
+    EXPECT_EQ(read_[number].frame, place.frame);
+    EXPECT_EQ(read_[number].bytes, place.bytes) << number;
+    EXPECT_EQ(read_[number].visits, place.visits) << number;
+    visits += place.visits.has_value();
+  }
+  EXPECT_GT(visits, 100U);
+}
+
+TEST_F(FollowedMap, AFullMapForgetsNothingThatWasNotRead) {
+  at_once_ = false;
+  settings_.save_every_s = 0.001;
+  EXPECT_GE(drive(250), 350U - 100) << "frames become no places";
+  read_newest();
+  ASSERT_EQ(read_.size(), 250U);
+  EXPECT_EQ(read_.begin()->second.frame, 7U) << "as the source counts";
+}
+
+}  // namespace
+}  // namespace seqloop::program
