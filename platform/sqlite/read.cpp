@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "sqlite/large_reads.hpp"
 #include "sqlite/little_endian.hpp"
 #include "sqlite/state.hpp"
 
@@ -116,7 +117,9 @@ void MapFile::State::each_row(std::int64_t from, std::int64_t to, const TakeRow&
   Statement rows(database, std::string(block_columns) +
                                "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
   rows.with(from, to);
-  while (rows.step() && take(block_row(rows))) {
+  while (rows.step()) {
+    const BlockRow row = block_row(rows);
+    if (!take(row, row.whole(form))) return;
   }
 }
 
@@ -159,9 +162,9 @@ void MapFile::State::read(std::int64_t from, std::int64_t to, const GiveRows& ro
   Kept kept(static_cast<std::size_t>(form.place_bytes));
   std::vector<BlockRow> wrong;  // told of at the end: until then another thread may be reading
   std::optional<std::int64_t> newest;
-  const auto take_row = [&](const BlockRow& row) {
+  const auto take_row = [&](const BlockRow& row, bool whole) {
     newest = row.first;
-    if (!row.whole(form)) {
+    if (!whole) {
       wrong.push_back(row);
       return static_cast<bool>(told);
     }
@@ -196,7 +199,10 @@ void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
     take(block);
   };
   const GiveRows rows = [this](const TakeRow& take_row) {
-    RowsAhead ahead([this](const TakeRow& keep) { state_->each_row(0, any, keep); });
+    RowsAhead ahead([this](const TakeRow& keep) {
+      const LargeReads large(state_->database);
+      state_->each_row(0, any, keep);
+    });
     ahead.give(take_row);
   };
   state_->read(0, any, rows, counted, damaged);

@@ -62,6 +62,7 @@ class Remains {
 
   std::map<std::int64_t, Session> sessions;
   std::optional<MapForm> form;
+  std::optional<Counts> counted;  ///< what the map said that it has
   std::map<std::int64_t, RawPlace> thumbnails;
   std::set<std::uint64_t> removed;
 
@@ -96,7 +97,9 @@ class Remains {
     } else if (are(c, "nttiiiiiii")) {
       const MapForm found{text_of(c[1]), text_of(c[2]), unsigned_of(c[3]), unsigned_of(c[4])};
       const Counts counts{c[5].integer, c[6].integer, c[7].integer, c[8].integer};
-      if (map_sum(found, counts) == c[9].integer) form = found;
+      if (map_sum(found, counts) != c[9].integer) return;
+      form = found;
+      counted = counts;
     } else if (are(c, "nibbi")) {
       if (row_checksum("statistics", id, c[1].integer, c[2].bytes, c[3].bytes) != c[4].integer)
         return;
@@ -204,6 +207,10 @@ class Copying {
 
   Recovered all() {
     for (auto& [id, session] : remains_.sessions) copy(id, session);
+    if (remains_.counted) {
+      miss(remains_.counted->links, result_.links, "links");
+      miss(remains_.counted->thumbnails, result_.thumbnails, "thumbnails");
+    }
     return std::move(result_);
   }
 
@@ -245,6 +252,13 @@ class Copying {
     if (!session.statistics && session.facts.statistics) {
       result_.lost.push_back("session '" + name + "': its statistics");
     }
+  }
+
+  void miss(std::int64_t there_were, std::uint64_t copied, const char* what) {
+    const auto all = static_cast<std::uint64_t>(std::max<std::int64_t>(there_were, 0));
+    if (copied >= all) return;
+    result_.lost.push_back(std::to_string(all - copied) + " of " + std::to_string(all) + " " +
+                           what);
   }
 
   /// @return places saved

@@ -91,7 +91,10 @@ void MapFile::forget(const std::string& session) {
     map.counts.thumbnails -=
         drop(map, "thumbnail WHERE place BETWEEN ? AND ?", numbers.first, numbers.last);
     // Links of other sessions to its places stay: they say which of theirs are visits of one place.
+    // Frames of theirs that became no place were nowhere else: what they visited is forgotten.
     map.counts.links -= drop(map, "link WHERE session = ?", facts.id);
+    map.counts.links -= drop(map, "link WHERE place IS NULL AND other BETWEEN ? AND ?",
+                             numbers.first, numbers.last);
     (void)drop(map, "block WHERE session = ?", facts.id);
     (void)drop(map, "statistics WHERE session = ?", facts.id);
     (void)drop(map, "session WHERE id = ?", facts.id);

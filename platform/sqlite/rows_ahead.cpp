@@ -22,7 +22,7 @@ std::span<const std::byte> copied(std::span<const std::byte> from, std::vector<s
 RowsAhead::RowsAhead(const GiveRows& read)
     : spare_(std::deque<Batch>(batches - 1)), thread_([this, read] {
         try {
-          read([this](const BlockRow& row) { return keep(row); });
+          read([this](const BlockRow& row, bool whole) { return keep(row, whole); });
         } catch (...) {
           failed_ = std::current_exception();
         }
@@ -42,7 +42,7 @@ RowsAhead::~RowsAhead() {
 }
 
 /// Copies a row to where the others are; what is there does not move.
-bool RowsAhead::keep(const BlockRow& row) {
+bool RowsAhead::keep(const BlockRow& row, bool whole) {
   const std::size_t more = row.records.size() + row.places.size();
   if (filling_.bytes.capacity() - filling_.bytes.size() < more) {
     if (!filling_.rows.empty() && !hand_over()) return false;
@@ -51,7 +51,7 @@ bool RowsAhead::keep(const BlockRow& row) {
   BlockRow kept = row;
   kept.records = copied(row.records, filling_.bytes);
   kept.places = copied(row.places, filling_.bytes);
-  filling_.rows.push_back(kept);
+  filling_.rows.push_back({kept, whole});
   return true;
 }
 
@@ -79,8 +79,8 @@ void RowsAhead::give(const TakeRow& take) {
       batch = std::move(read_.front());
       read_.pop();
     }
-    for (const BlockRow& row : batch.rows) {
-      if (!take(row)) return;
+    for (const Read& read : batch.rows) {
+      if (!take(read.row, read.whole)) return;
     }
     const std::scoped_lock lock(mutex_);
     spare_.push(std::move(batch));

@@ -29,10 +29,10 @@ class MapVerb : public test::Program {
     return text;
   }
 
-  /// Flips a bit of a place's bytes.
-  void damage(const std::string& name, std::uint64_t place) const {
+  /// Flips a bit of a place's bytes, of which there are 200, or of its thumbnail's 700.
+  void damage(const std::string& name, std::uint64_t place, std::size_t size = 200) const {
     std::string bytes = test::read_all(file(name));
-    const std::vector<std::byte> whole = test::sample_place(place);
+    const std::vector<std::byte> whole = test::sample_place(place, size);
     const auto at = bytes.find({reinterpret_cast<const char*>(whole.data()), whole.size()});
     ASSERT_NE(at, std::string::npos);
     bytes[at] = static_cast<char>(bytes[at] ^ 1);
@@ -80,6 +80,11 @@ TEST_F(MapVerb, CheckNamesWhatIsDamagedAndRecoverLeavesItOut) {
   EXPECT_NE(outcome.err.find("lost: session 'tuesday': 10 of 40 places"), std::string::npos);
   expect(0, "check b", "all of them whole");
   expect_refused("recover a b", "there is such a file already");
+  damage("b", 60, 700);
+  expect_refused("check b", "b: the thumbnail of place 60 is damaged");
+  const auto pictures = expect(0, "recover b d", "d: 70 places in 2 sessions, 16 links, 7 thumb");
+  EXPECT_NE(pictures.err.find("b: lost: 1 of 8 thumbnails"), std::string::npos) << pictures.err;
+  EXPECT_EQ(pictures.err.find("links\n"), std::string::npos) << "all of them are there";
   folder_.write("text", std::string(20'000, 'x'));
   expect_refused("recover text c", "nothing of a map is whole in it");
 }
@@ -132,7 +137,15 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
 TEST_F(MapVerb, ForgetAndCompactMakeItSmaller) {
   make("a", 300);
   const auto whole = fs::file_size(file("a"));
+  const auto visits = [this] {
+    const auto json = nlohmann::json::parse(expect(0, "info a --json", "{").out);
+    std::size_t sum = 0;
+    for (const auto& session : json["sessions"]) sum += session["visits"].get<std::size_t>();
+    return sum;
+  };
+  EXPECT_EQ(visits(), 8U);
   expect(0, "forget a monday", "a: 1200 places in 1 session in ");
+  EXPECT_EQ(visits(), 0U) << "all were of monday";
   expect(0, "compact a", "a: 1200 places in 1 session in ");
   EXPECT_LT(fs::file_size(file("a")), whole * 6 / 10);
   expect(0, "check a", "1200 places in 1 session, all");

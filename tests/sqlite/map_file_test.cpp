@@ -276,6 +276,7 @@ TEST_F(Map, ForgetsOneSessionAlone) {
   map.read_links([&](const sqlite::SavedLink& link) {
     EXPECT_EQ(link.session, 2);
     if (link.other < 40) ++to_the_forgotten;
+    EXPECT_TRUE(link.place || link.other >= 40) << "a visit of what is forgotten";
   });
   EXPECT_GT(to_the_forgotten, 0U) << "which of tuesday's places are one is known as before";
   EXPECT_FALSE(map.thumbnail(0));

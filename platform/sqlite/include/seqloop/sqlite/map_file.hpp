@@ -188,8 +188,8 @@ class MapFile {
   /// std::invalid_argument: another session, numbers or sizes that do not fit.
   void save(std::int64_t session, const MapBatch& batch);
 
-  /// Removes a session with its places, thumbnails and links; others keep their numbers, and their
-  /// links to places of it, which say which of theirs are one place.
+  /// Removes a session with its places, thumbnails and links, and all visits of it. Other places
+  /// keep their numbers, and their links to places of it, which say which of them are one place.
   /// Throws SetupError: no such name; SaveError.
   void forget(const std::string& session);
 
