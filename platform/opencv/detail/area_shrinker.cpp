@@ -64,6 +64,8 @@ void AreaShrinker::shrink(const cv::Mat& picture, const cv::Size& size, cv::Mat&
       for (int i = 0; i < cover.whole; ++i) whole += *sum++;
       total += whole * static_cast<std::uint32_t>(size.width);
       if (cover.behind_part != 0) total += std::uint64_t{cover.behind_part} * *sum;
+      // A mean of whole numbers is a half or further from it than a double's last bit.
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings)
       *out++ = static_cast<std::uint8_t>(static_cast<double>(total) / all + 0.5);
     }
   }
