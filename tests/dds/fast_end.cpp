@@ -2,11 +2,12 @@
 // A publisher and a subscriber of ROS 2 that share no code with Cyclone DDS or with us: eProsima
 // Fast DDS, which is given messages as bytes.
 //
-// Usage: fast_end publish TOPIC TYPE reliable|best_effort    messages from standard input
+// Usage: fast_end publish TOPIC TYPE reliable|best_effort [PARTITION]    messages from standard
+//        input
 //        fast_end listen  TOPIC TYPE reliable|best_effort [PARTITION]    messages to standard
 //        output
 // TOPIC and TYPE as DDS names them. With a partition, the first eight bytes of a message are its
-// key, and what was published before is listened to as well. A message is 4 bytes that say how long
+// key, and who comes late hears what was published before. A message is 4 bytes that say how long
 // it is, 4 that say when it is due, in microseconds after the first one, and its CDR. The domain is
 // ROS_DOMAIN_ID. `publish` waits until it is heard, and in the end until all has arrived; it says
 // "heard" on stderr. `listen` says "listening", and "heard" when it has found who publishes; it
@@ -86,7 +87,8 @@ bool read(void* to, std::size_t size) {
       std::cin.read(static_cast<char*>(to), static_cast<std::streamsize>(size)));
 }
 
-int publish(fast::DomainParticipant& participant, fast::Topic* topic, bool reliable) {
+int publish(fast::DomainParticipant& participant, fast::Topic* topic, bool reliable,
+            const char* partition) {
   fast::DataWriterQos qos;
   qos.reliability().kind =
       reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
@@ -99,8 +101,16 @@ int publish(fast::DomainParticipant& participant, fast::Topic* topic, bool relia
   // Large messages go out in pieces, whose sizes differ.
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
+  fast::PublisherQos where = fast::PUBLISHER_QOS_DEFAULT;
+  if (partition != nullptr) {
+    where.partition().push_back(partition);
+    qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
+    qos.resource_limits().max_samples = 50'000;
+    qos.resource_limits().max_instances = 10;
+    qos.resource_limits().max_samples_per_instance = 5000;
+  }
   fast::DataWriter* const writer =
-      participant.create_publisher(fast::PUBLISHER_QOS_DEFAULT)->create_datawriter(topic, qos);
+      participant.create_publisher(where)->create_datawriter(topic, qos);
   if (writer == nullptr) return 2;
   using Clock = std::chrono::steady_clock;
   fast::PublicationMatchedStatus matched;
@@ -193,7 +203,7 @@ int main(int count, char** words) {
   type.register_type(participant);
   fast::Topic* const topic = participant->create_topic(words[2], words[3], fast::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) return 2;
-  const int code = verb == "publish" ? publish(*participant, topic, reliable)
+  const int code = verb == "publish" ? publish(*participant, topic, reliable, partition)
                                      : listen(*participant, topic, reliable, partition);
   // Its threads are ended by hand nowhere: the process is.
   std::cout.flush();
