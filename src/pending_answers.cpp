@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "seqloop/detail/calibration.hpp"
 #include "seqloop/detail/portable_math.hpp"
 
 namespace seqloop {
@@ -96,8 +97,8 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
 }
 
 /// How many of a trace's frames count, from the newest on. Where roads meet, those that lead there
-/// look alike: within a drive, a trace begins where the belief of the time agreed with it first, or
-/// where an earlier look has found it.
+/// look alike: within a drive, a trace begins where the belief of the time did not contradict it
+/// first, or where an earlier look has found it.
 std::size_t PendingAnswers::begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
                                   std::span<const BeliefTraces::Step> trace) noexcept {
   std::size_t frames = trace.size();
@@ -109,6 +110,8 @@ std::size_t PendingAnswers::begun(const PlaceMap& map, std::uint64_t newest, std
     constexpr double likely = 0.5;
     if (then.frame != frame || (then.lag > 0 && then.on.still > likely)) break;
     if (then.likeliest == none) continue;
+    // A row that is the likeliest of those that were hardly believed contradicts nothing.
+    if (then.new_place > likely) break;
     const bool agrees = map.order().apart(then.likeliest, row) <= own;
     if (agrees || map.same_place(then.likeliest, row)) break;
   }
@@ -177,12 +180,13 @@ void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
 
 void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
                             std::uint64_t oldest) noexcept {
+  const double least = before_calibration(least_);
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
     const bool sure =
-        waiting.believed && waiting.lag >= 2 * after_centre_ && probability(waiting) >= least_;
+        waiting.believed && waiting.lag >= 2 * after_centre_ && probability(waiting) >= least;
     if (late || sure || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
@@ -195,7 +199,7 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& wai
   if (!waiting.readable) return;
   answer.gate = Gate::new_place;
   if (!waiting.believed) return;
-  answer.probability = static_cast<float>(probability(waiting));
+  answer.probability = static_cast<float>(calibrated(probability(waiting)));
   answer.match = match(belief, map, waiting.frame);
   const bool sure = static_cast<double>(answer.probability) >= least_;
   constexpr double half = 0.5;

@@ -8,9 +8,21 @@
 namespace seqloop {
 namespace {
 
-// Chances of a frame: a trace begins, or ends.
-constexpr double begins = 0.01;
-constexpr double ends = 0.001;
+/// Chances of a frame: a trace begins, or ends.
+struct Chances {
+  double begins;
+  double ends;
+};
+
+/// Where the pictures go on from one to the next, a frame that is as new as can be is a cut: the
+/// robot was carried away, or the camera was covered. Drives whose frames are all new show none.
+/// @param least half of what is new of this drive's frames
+Chances chances_of(double novelty, double least) {
+  constexpr double all_new = 0.6;
+  constexpr double goes_on = 0.15;
+  const bool cut = novelty > all_new && least < goes_on;
+  return cut ? Chances{0.9, 0.95} : Chances{0.01, 0.001};
+}
 
 /// How likely the frames that follow are, by where the robot is.
 struct Backward {
@@ -19,10 +31,10 @@ struct Backward {
   double gone;
 
   /// To the frame before. @param likelier of the frame that it comes from
-  void step(double likelier) {
+  void step(double likelier, const Chances& chances) {
     const double stays = likelier * on;
-    fresh = (1.0 - begins) * fresh + begins * stays;
-    on = (1.0 - ends) * stays + ends * gone;
+    fresh = (1.0 - chances.begins) * fresh + chances.begins * stays;
+    on = (1.0 - chances.ends) * stays + chances.ends * gone;
     const double sum = fresh + on + gone;
     fresh /= sum;
     on /= sum;
@@ -45,10 +57,11 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain - usual * std::max(step.novelty, least));
+    const Chances chances = chances_of(step.novelty, least);
     if (back + 1 < trace.size()) {
-      gone += on * ends;
-      on = on * (1.0 - ends) + fresh * begins;
-      fresh *= 1.0 - begins;
+      gone += on * chances.ends;
+      on = on * (1.0 - chances.ends) + fresh * chances.begins;
+      fresh *= 1.0 - chances.begins;
     }
     on *= likelier;
     // Their sum is kept at 1, so that no trace is too long to be counted.
@@ -59,6 +72,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     forward_[back] = {fresh, on, gone, likelier};
   }
   Backward still{1.0, 1.0, 1.0};
+  constexpr double ends = 0.001;
   Backward left{0.0, ends, 1.0};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
@@ -67,8 +81,9 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       return is / (is + here.fresh * after.fresh + here.gone * after.gone);
     };
     on_[back] = {share(still), share(left)};
-    still.step(here.likelier);
-    left.step(here.likelier);
+    const Chances chances = chances_of(trace[back].novelty, least);
+    still.step(here.likelier, chances);
+    left.step(here.likelier, chances);
   }
   return on_.first(asked);
 }

@@ -11,7 +11,6 @@
 #include "core/seen.hpp"
 #include "core/ways.hpp"
 #include "seqloop/detail/sketch.hpp"
-#include "seqloop/detail/trace_span.hpp"
 
 namespace seqloop {
 namespace {
@@ -271,72 +270,6 @@ TEST(PlaceBeliefOracle, WhereTheRobotStandsAndIsCarried) {
   query.insert(query.end(), 30, query.back());
   query.insert(query.end(), way.begin() + 200, way.begin() + 260);
   expect_like_the_naive_one(test::way(6, 300, 0.5F, 1, size), query);
-}
-
-/// All the ways in which a trace may begin and end, one by one.
-TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
-  constexpr double begins = 0.01;
-  constexpr double ends = 0.001;
-  TestArena memory;
-  TraceSpan span(memory.arena, 40);
-  std::mt19937 random(7);
-  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  for (int round = 0; round < 50; ++round) {
-    const std::size_t frames = 1 + random() % 40;
-    const double before = round == 0 ? 0.0 : share();
-    const double usual = share();
-    std::vector<BeliefTraces::Step> trace;
-    for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
-    const std::size_t asked = 1 + random() % frames;
-    const auto found = span.find(trace, before, usual, 0.3, asked);
-    ASSERT_EQ(found.size(), asked);
-    // Frames counted from the oldest: on the trace in [first, last).
-    std::vector<double> still(frames);
-    std::vector<double> left(frames);
-    double all_still = 0.0;
-    double all_left = 0.0;
-    const auto take = [&](std::size_t first, std::size_t last, double chance) {
-      for (std::size_t i = first; i < last; ++i) {
-        const auto& step = trace[frames - 1 - i];
-        chance *= std::exp(step.gain - usual * std::max(step.novelty, 0.3));
-      }
-      const bool goes_on = last == frames;
-      const double stays = chance * (goes_on ? 1.0 : ends);
-      const double leaves = chance * ends;
-      all_still += stays;
-      all_left += leaves;
-      for (std::size_t i = first; i < last; ++i) {
-        still[i] += stays;
-        left[i] += leaves;
-      }
-    };
-    for (std::size_t first = 0; first < frames; ++first) {
-      const double begun = first == 0 ? 1.0
-                                      : (1.0 - before) * begins *
-                                            std::pow(1.0 - begins, static_cast<double>(first - 1));
-      for (std::size_t last = first + 1; last <= frames; ++last) {
-        take(first, last, begun * std::pow(1.0 - ends, static_cast<double>(last - first - 1)));
-      }
-    }
-    // Or the robot never came onto it.
-    all_still += (1.0 - before) * std::pow(1.0 - begins, static_cast<double>(frames - 1));
-    for (std::size_t i = frames - asked; i < frames; ++i) {
-      EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
-      EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
-    }
-  }
-}
-
-TEST(TraceSpan, NoTraceIsTooLong) {
-  TestArena memory;
-  TraceSpan span(memory.arena, 1001);
-  for (const double gain : {1.9, -1.9, 0.0}) {
-    const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
-      EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
-      EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
-    }
-  }
 }
 
 }  // namespace

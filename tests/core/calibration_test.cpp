@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/detail/calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace seqloop {
+namespace {
+
+double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
+double of_odds(double odds) { return 1.0 / (1.0 + std::exp(-odds)); }
+
+TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
+  double before = 0.0;
+  for (int i = 1; i < 1000; ++i) {
+    const double probability = of_odds(-20.0 + 0.04 * i);
+    const double right = calibrated(probability);
+    ASSERT_GT(right, before) << probability;
+    ASSERT_LT(right, 1.0) << probability;
+    ASSERT_NEAR(log_odds(before_calibration(right)), log_odds(probability), 1e-4) << probability;
+    before = right;
+  }
+}
+
+TEST(Calibration, SaysWhatWasRight) {
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-1.4))), -0.8, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(0.9))), 0.75, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.6))), -1.6 - 0.31, 1e-9);
+}
+
+TEST(Calibration, LeavesWhatIsAccepted) {
+  for (const double probability : {0.951, 0.99, 0.999999, 1.0}) {
+    EXPECT_EQ(calibrated(probability), probability);
+    EXPECT_EQ(before_calibration(probability), probability);
+  }
+}
+
+TEST(Calibration, TakesTheEnds) {
+  EXPECT_GE(calibrated(0.0), 0.0);
+  EXPECT_LT(calibrated(0.0), 0.001);
+  EXPECT_EQ(calibrated(1.0), 1.0);
+}
+
+}  // namespace
+}  // namespace seqloop

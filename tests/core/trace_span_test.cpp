@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The smoother against the sum over all that it sums up, and what a cut does to it.
+#include "seqloop/detail/trace_span.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+/// All the ways in which a trace may begin and end, one by one.
+TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 40);
+  std::mt19937 random(7);
+  const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (int round = 0; round < 50; ++round) {
+    const std::size_t frames = 1 + random() % 40;
+    const double before = round == 0 ? 0.0 : share();
+    const double usual = share();
+    std::vector<BeliefTraces::Step> trace;
+    for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
+    const std::size_t asked = 1 + random() % frames;
+    // Frames are counted from the oldest. One that is all new is a cut in every other drive.
+    const double least = round % 2 == 0 ? 0.1 : 0.3;
+    const auto step_of = [&](std::size_t i) { return trace[frames - 1 - i]; };
+    const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).novelty > 0.6; };
+    const auto begins = [&](std::size_t i) { return is_cut(i) ? 0.9 : 0.01; };
+    const auto ends = [&](std::size_t i) { return is_cut(i) ? 0.95 : 0.001; };
+    const auto found = span.find(trace, before, usual, least, asked);
+    ASSERT_EQ(found.size(), asked);
+    // On the trace in [first, last).
+    std::vector<double> still(frames);
+    std::vector<double> left(frames);
+    double all_still = 0.0;
+    double all_left = 0.0;
+    const auto take = [&](std::size_t first, std::size_t last, double chance) {
+      for (std::size_t i = first; i < last; ++i) {
+        const auto step = step_of(i);
+        chance *= std::exp(step.gain - usual * std::max(step.novelty, least));
+        if (i > first) chance *= 1.0 - ends(i);
+      }
+      // That it ends with the frame to come.
+      const double leaves = chance * (last == frames ? 0.001 : ends(last));
+      const double stays = last == frames ? chance : leaves;
+      all_still += stays;
+      all_left += leaves;
+      for (std::size_t i = first; i < last; ++i) {
+        still[i] += stays;
+        left[i] += leaves;
+      }
+    };
+    double not_yet = 1.0 - before;
+    for (std::size_t first = 0; first < frames; ++first) {
+      const double begun = first == 0 ? 1.0 : not_yet * begins(first);
+      if (first > 0) not_yet *= 1.0 - begins(first);
+      for (std::size_t last = first + 1; last <= frames; ++last) take(first, last, begun);
+    }
+    // Or the robot never came onto it.
+    all_still += not_yet;
+    for (std::size_t i = frames - asked; i < frames; ++i) {
+      EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
+      EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
+    }
+  }
+}
+
+TEST(TraceSpan, BeginsAndEndsWithACut) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 40);
+  // On the trace between the cuts at frames 10 and 20, newest first.
+  std::vector<BeliefTraces::Step> trace;
+  for (std::size_t i = 0; i < 30; ++i) {
+    const bool cut = i == 9 || i == 19;
+    const bool on = i > 9 && i <= 19;
+    trace.push_back({0, on ? 0.3 : -0.1, cut ? 0.615 : 0.1});
+  }
+  for (const double least : {0.05, 0.25}) {
+    SCOPED_TRACE(least);
+    const auto on = span.find(trace, 0.0, 0.0, least, trace.size());
+    const bool sees_cuts = least < 0.15;
+    EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
+    EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
+    EXPECT_EQ(on[10].still > 0.9, sees_cuts) << on[10].still;
+    EXPECT_EQ(on[9].still < 0.1, sees_cuts) << on[9].still;
+  }
+}
+
+TEST(TraceSpan, NoTraceIsTooLong) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 1001);
+  for (const double gain : {1.9, -1.9, 0.0}) {
+    const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
+      EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
+      EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace seqloop
