@@ -82,12 +82,13 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   const bool known = before.frame == first && before.believed && before.lag > 0 &&
                      map.order().apart(before.row, trace.back().row) <= own;
   const auto waiting = static_cast<std::size_t>(newest + 1 - first_);
-  const std::size_t frames = std::min(begun(map, newest, oldest, trace), waiting);
+  const std::size_t frames = std::min(trace.size(), waiting);
   // A frame that stands still tells half as much as one that does not.
   constexpr double half = 0.5;
   const std::span<const TraceSpan::On> on =
-      span_.find(trace, known ? trace_is_right(before.odds) * before.on.still : 0.0,
-                 belief.usual_gain(), half * belief.usual_novelty(), frames);
+      span_.find(trace, agreed(map, newest, oldest, trace),
+                 known ? trace_is_right(before.odds) * before.on.still : 0.0, belief.usual_gain(),
+                 half * belief.usual_novelty(), frames);
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (frame.waits && frame.frame == newest - back) {
@@ -96,11 +97,11 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   }
 }
 
-/// How many of a trace's frames count, from the newest on. Where roads meet, those that lead there
-/// look alike: within a drive, a trace begins where the belief of the time did not contradict it
-/// first, or where an earlier look has found it.
-std::size_t PendingAnswers::begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
-                                  std::span<const BeliefTraces::Step> trace) noexcept {
+/// How many of a trace's frames, from the newest on, came since the belief of the time agreed with
+/// it, or did not contradict it, first. All, where it reaches back to the drive's beginning, or to
+/// a gap.
+std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
+                                   std::span<const BeliefTraces::Step> trace) noexcept {
   std::size_t frames = trace.size();
   if (newest - (frames - 1) <= oldest) return frames;
   for (; frames > 1; --frames) {
@@ -108,7 +109,7 @@ std::size_t PendingAnswers::begun(const PlaceMap& map, std::uint64_t newest, std
     const std::size_t row = trace[frames - 1].row;
     const Waiting& then = at(frame);
     constexpr double likely = 0.5;
-    if (then.frame != frame || (then.lag > 0 && then.on.still > likely)) break;
+    if (then.frame != frame) break;
     if (then.likeliest == none) continue;
     // A row that is the likeliest of those that were hardly believed contradicts nothing.
     if (then.new_place > likely) break;

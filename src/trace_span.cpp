@@ -24,6 +24,20 @@ Chances chances_of(double novelty, double least) {
   return cut ? Chances{0.9, 0.95} : Chances{0.01, 0.001};
 }
 
+/// What a frame has to gain, by novelty, where the belief of the time did not agree with the trace
+/// yet: nearly as much as the frames since have gained.
+/// @param agreed the frames since
+double usual_before(std::span<const BeliefTraces::Step> agreed, double usual, double least) {
+  double gained = 0.0;
+  double novelty = 0.0;
+  for (const BeliefTraces::Step& step : agreed) {
+    gained += step.gain;
+    novelty += std::max(step.novelty, least);
+  }
+  constexpr double nearly = 0.9;
+  return novelty > 0.0 ? std::max(usual, nearly * gained / novelty) : usual;
+}
+
 /// How likely the frames that follow are, by where the robot is.
 struct Backward {
   double fresh;
@@ -49,14 +63,16 @@ TraceSpan::TraceSpan(Arena& arena, std::size_t most)
       on_(arena.take<On>("frames on a trace", most)) {}
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
-                                               double before, double usual, double least,
-                                               std::size_t asked) noexcept {
+                                               std::size_t agreed, double before, double usual,
+                                               double least, std::size_t asked) noexcept {
+  const double early = usual_before(trace.first(agreed), usual, least);
   double fresh = 1.0 - before;
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
-    const double likelier = exponential(step.gain - usual * std::max(step.novelty, least));
+    const double elsewhere = (back < agreed ? usual : early) * std::max(step.novelty, least);
+    const double likelier = exponential(step.gain - elsewhere);
     const Chances chances = chances_of(step.novelty, least);
     if (back + 1 < trace.size()) {
       gone += on * chances.ends;

@@ -26,13 +26,21 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     std::vector<BeliefTraces::Step> trace;
     for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
     const std::size_t asked = 1 + random() % frames;
+    const std::size_t agreed = random() % (frames + 1);
     // Frames are counted from the oldest. One that is all new is a cut in every other drive.
     const double least = round % 2 == 0 ? 0.1 : 0.3;
     const auto step_of = [&](std::size_t i) { return trace[frames - 1 - i]; };
     const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).novelty > 0.6; };
     const auto begins = [&](std::size_t i) { return is_cut(i) ? 0.9 : 0.01; };
     const auto ends = [&](std::size_t i) { return is_cut(i) ? 0.95 : 0.001; };
-    const auto found = span.find(trace, before, usual, least, asked);
+    double gained = 0.0;
+    double novelty = 0.0;
+    for (std::size_t i = frames - agreed; i < frames; ++i) {
+      gained += step_of(i).gain;
+      novelty += std::max(step_of(i).novelty, least);
+    }
+    const double early = agreed == 0 ? usual : std::max(usual, 0.9 * gained / novelty);
+    const auto found = span.find(trace, agreed, before, usual, least, asked);
     ASSERT_EQ(found.size(), asked);
     // On the trace in [first, last).
     std::vector<double> still(frames);
@@ -42,7 +50,8 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     const auto take = [&](std::size_t first, std::size_t last, double chance) {
       for (std::size_t i = first; i < last; ++i) {
         const auto step = step_of(i);
-        chance *= std::exp(step.gain - usual * std::max(step.novelty, least));
+        const double elsewhere = i < frames - agreed ? early : usual;
+        chance *= std::exp(step.gain - elsewhere * std::max(step.novelty, least));
         if (i > first) chance *= 1.0 - ends(i);
       }
       // That it ends with the frame to come.
@@ -82,7 +91,7 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
   }
   for (const double least : {0.05, 0.25}) {
     SCOPED_TRACE(least);
-    const auto on = span.find(trace, 0.0, 0.0, least, trace.size());
+    const auto on = span.find(trace, trace.size(), 0.0, 0.0, least, trace.size());
     const bool sees_cuts = least < 0.15;
     EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
@@ -91,12 +100,25 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
   }
 }
 
+TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 40);
+  for (const double gain : {0.15, 0.95}) {
+    SCOPED_TRACE(gain);
+    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5});
+    trace.resize(30, {0, gain, 0.5});
+    EXPECT_GT(span.find(trace, 30, 0.0, 0.1, 0.25, 30)[29].still, 0.5);
+    EXPECT_EQ(span.find(trace, 20, 0.0, 0.1, 0.25, 30)[25].still > 0.5, gain > 0.5);
+    EXPECT_GT(span.find(trace, 20, 0.0, 0.1, 0.25, 30)[15].still, 0.99);
+  }
+}
+
 TEST(TraceSpan, NoTraceIsTooLong) {
   TestArena memory;
   TraceSpan span(memory.arena, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
     const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
+    for (const TraceSpan::On& on : span.find(trace, trace.size(), 0.0, 0.1, 0.3, trace.size())) {
       EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
       EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
     }

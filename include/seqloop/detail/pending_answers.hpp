@@ -109,8 +109,8 @@ class PendingAnswers {
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
-  [[nodiscard]] std::size_t begun(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
-                                  std::span<const BeliefTraces::Step> trace) noexcept;
+  [[nodiscard]] std::size_t agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
+                                   std::span<const BeliefTraces::Step> trace) noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double odds,
                  const TraceSpan::On& on, std::uint64_t lag) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,

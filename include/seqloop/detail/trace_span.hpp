@@ -24,14 +24,18 @@ class TraceSpan {
   };
 
   /// @param trace  the newest frame first; at most `most`
+  /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace;
+  /// 0 to
+  ///               all of them. Before that the robot may have been elsewhere, and where roads
+  ///               meet, the frames that lead there look alike: such a frame has to gain more
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
   /// @return [asked] frame by frame as the trace; until the next call
   /// Work: as many exponentials as the trace has frames. Allocates: never.
-  std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
-                           double least, std::size_t asked) noexcept;
+  std::span<const On> find(std::span<const BeliefTraces::Step> trace, std::size_t agreed,
+                           double before, double usual, double least, std::size_t asked) noexcept;
 
  private:
   /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.
