@@ -2,38 +2,39 @@
 #include "seqloop/detail/calibration.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "seqloop/detail/portable_math.hpp"
 
 namespace seqloop {
 namespace {
 
-// Log-odds that a trace gives, and those of what was right: a line up to the first of these, one
-// that is steeper to the second, and behind that they are equal.
-constexpr double doubtful = 2.6;
-constexpr double trusted = 3.7;
-constexpr double slope = 0.34;
-constexpr double of_doubtful = 0.6 + slope * doubtful;
-constexpr double steep = (trusted - of_doubtful) / (trusted - doubtful);
+// Log-odds that a trace gives, and those of what was right. Linear between; equal behind the last.
+using Points = std::array<double, 6>;
+constexpr Points said{-4.6, -1.4, -0.4, 2.2, 2.85, 2.95};
+constexpr Points right{-1.6, -0.8, 0.5, 1.0, 1.3, 2.95};
+constexpr double slope_before = 0.31;
 
-double log_odds(double probability) {
+double between(const Points& from, const Points& to, double slope, double probability) {
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(probability, tiny, 1.0 - tiny);
-  return logarithm(sure / (1.0 - sure));
+  const double odds = logarithm(sure / (1.0 - sure));
+  if (odds >= from.back()) return probability;
+  if (odds < from.front()) return logistic(to.front() + slope * (odds - from.front()));
+  std::size_t next = 1;
+  while (odds >= from[next]) ++next;
+  const double share = (odds - from[next - 1]) / (from[next] - from[next - 1]);
+  return logistic(to[next - 1] + share * (to[next] - to[next - 1]));
 }
 
 }  // namespace
 
 double calibrated(double probability) noexcept {
-  const double odds = log_odds(probability);
-  if (odds >= trusted) return probability;
-  return logistic(of_doubtful + (odds < doubtful ? slope : steep) * (odds - doubtful));
+  return between(said, right, slope_before, probability);
 }
 
 double before_calibration(double probability) noexcept {
-  const double odds = log_odds(probability);
-  if (odds >= trusted) return probability;
-  return logistic(doubtful + (odds - of_doubtful) / (odds < of_doubtful ? slope : steep));
+  return between(right, said, 1.0 / slope_before, probability);
 }
 
 }  // namespace seqloop

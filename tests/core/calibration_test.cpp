@@ -24,14 +24,13 @@ TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
 }
 
 TEST(Calibration, SaysWhatWasRight) {
-  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.0))), 0.6 - 0.34 * 5.0, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(0.0))), 0.6, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(2.6))), 1.484, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(3.15))), (1.484 + 3.7) / 2.0, 1e-9) << "half way";
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-1.4))), -0.8, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(0.9))), 0.75, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.6))), -1.6 - 0.31, 1e-9);
 }
 
 TEST(Calibration, LeavesWhatIsAccepted) {
-  for (const double probability : {0.976, 0.99, 0.999999, 1.0}) {
+  for (const double probability : {0.951, 0.99, 0.999999, 1.0}) {
     EXPECT_EQ(calibrated(probability), probability);
     EXPECT_EQ(before_calibration(probability), probability);
   }

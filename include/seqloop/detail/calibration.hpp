@@ -4,7 +4,7 @@
 namespace seqloop {
 
 /// How often answers were right of which the trace says this, on the drives that numbers were
-/// chosen by: a trace is right or wrong as a whole, which the frames along it do not tell. From .976
+/// chosen by: a trace is right or wrong as a whole, which the frames along it do not tell. From .95
 /// on it is the same. Rises with it. @param probability 0 .. 1 @return 0 .. 1 Work: an exponential
 /// and a logarithm. Source: src/README.md, section 6.6.
 [[nodiscard]] double calibrated(double probability) noexcept;
