@@ -121,45 +121,43 @@ class Fleet::Impl {
 
   bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear,
             const std::function<void(std::int64_t)>& gone) {
-    while (true) {
-      void* sample = nullptr;
-      dds_sample_info_t info{};
-      const std::int32_t count = dds_take(reader_.handle(), &sample, &info, 1, 1);
-      if (count <= 0) return false;
-      const auto give_back = [&](void* const* loan) {
-        dds_return_loan(reader_.handle(), const_cast<void**>(loan), count);
-      };
-      const std::unique_ptr<void*, decltype(give_back)> loan(&sample, give_back);
-      const auto& place = *static_cast<const seqloop_fleet_Place*>(sample);
-      if (!info.valid_data) {
-        const bool nobody = info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
-        if (gone && nobody) gone(place.session);
-        continue;
-      }
-      FleetPlace heard{
-          place.session,
-          place.frame,
-          place.time_ns,
-          std::as_bytes(std::span(place.bytes._buffer, std::size_t{place.bytes._length})),
-          {},
-          {}};
-      if (place.visit._length == 1) {
-        heard.visit = {place.visit._buffer[0].session, place.visit._buffer[0].frame};
-      }
-      if (place.statistics._length == 1) {
-        const seqloop_fleet_Statistics& its = place.statistics._buffer[0];
-        heard.statistics = {its.frames, numbers(its.mean), numbers(its.variance)};
-      }
-      if (place.about._length == 0) {
-        hear(heard, nullptr);
-        return true;
-      }
-      const seqloop_fleet_About& about = place.about._buffer[0];
-      const FleetSession session{words(about.robot),     words(about.session),  words(about.form),
-                                 words(about.describer), about.descriptor_size, about.place_bytes};
-      hear(heard, &session);
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    const std::int32_t count = dds_take(reader_.handle(), &sample, &info, 1, 1);
+    if (count <= 0) return false;
+    const auto give_back = [&](void* const* loan) {
+      dds_return_loan(reader_.handle(), const_cast<void**>(loan), count);
+    };
+    const std::unique_ptr<void*, decltype(give_back)> loan(&sample, give_back);
+    const auto& place = *static_cast<const seqloop_fleet_Place*>(sample);
+    if (!info.valid_data) {
+      const bool nobody = info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
+      if (gone && nobody) gone(place.session);
       return true;
     }
+    FleetPlace heard{
+        place.session,
+        place.frame,
+        place.time_ns,
+        std::as_bytes(std::span(place.bytes._buffer, std::size_t{place.bytes._length})),
+        {},
+        {}};
+    if (place.visit._length == 1) {
+      heard.visit = {place.visit._buffer[0].session, place.visit._buffer[0].frame};
+    }
+    if (place.statistics._length == 1) {
+      const seqloop_fleet_Statistics& its = place.statistics._buffer[0];
+      heard.statistics = {its.frames, numbers(its.mean), numbers(its.variance)};
+    }
+    if (place.about._length == 0) {
+      hear(heard, nullptr);
+      return true;
+    }
+    const seqloop_fleet_About& about = place.about._buffer[0];
+    const FleetSession session{words(about.robot),     words(about.session),  words(about.form),
+                               words(about.describer), about.descriptor_size, about.place_bytes};
+    hear(heard, &session);
+    return true;
   }
 
   [[nodiscard]] std::uint32_t others() const noexcept {

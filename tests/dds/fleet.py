@@ -47,14 +47,14 @@ class Robot:
     """`seqloop run` of one robot, at its drive's own pace. `network` is told to Cyclone DDS, too."""
 
     def __init__(self, seqloop: str, work: pathlib.Path, name: str, source: pathlib.Path, map_file: str,
-                 *more: str, network: str = "", standardise: str = "off") -> None:
+                 *more: str, network: str = "", standardise: str = "off", save_every_s: float = 0.1) -> None:
         self.name, self.lines, self.said = name, work / f"{name}.jsonl", work / f"{name}.said"
         environment = ros.environment()
         environment["CYCLONEDDS_URI"] += "," + network if network else ""
         with self.said.open("w") as said:
             self.process = subprocess.Popen(
                 [seqloop, "run", "--source", source, "--map", work / map_file, "--fleet", "test", "--robot", name,
-                 "--fps", str(RATE), "--pace", "live", "--save-every-s", "0.1", "--standardise", standardise,
+                 "--fps", str(RATE), "--pace", "live", "--save-every-s", str(save_every_s), "--standardise", standardise,
                  "--out", self.lines, *more], stderr=said, env=environment)
 
     def end(self) -> list[dict]:

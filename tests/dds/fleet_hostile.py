@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from dds import ros  # noqa: E402
 from dds.fleet import SIZE, Robot, drive, expect, loops, way  # noqa: E402
 
-FRAMES = 800
+FRAMES = 1200
 SECOND = 1_000_000_000
 
 
@@ -49,7 +49,7 @@ def attacks() -> list[bytes]:
     whole = place(1006, 0, 0, about("cut"))
     said += [whole[:end] for end in (12, 20, 28, 33, 60, len(whole) - 4)]
     said += [whole[:28] + struct.pack("<I", 2**32 - 1) + whole[32:], whole[:28] + struct.pack("<I", 2) + whole[32:]]
-    said += [place(1001, frame, 10 * SECOND) for frame in range(1, 2500)]
+    said += [place(1001, frame, 10 * SECOND) for frame in range(1, 2100)]
     return said
 
 
@@ -58,6 +58,7 @@ def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
     anna = Robot(seqloop, work, "anna", drive(work, "anna", seen, 1), "anna.seqloop")
     time.sleep(1.0)
     bert = Robot(seqloop, work, "bert", drive(work, "bert", seen, 2), "bert.seqloop")
+    time.sleep(1.0)  # both hear it from the first
     evil = subprocess.Popen([fast_end, "publish", "seqloop_fleet/places", "seqloop_fleet::Place", "reliable", "test"],
                             stdin=subprocess.PIPE, env=ros.environment())
     # Two thousand a second.
@@ -79,7 +80,7 @@ def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
         expect(sessions == 6 and other.told() <= places <= other.told() + 2100,
                f"what it takes in of them is bounded: {places} places of {sessions} sessions")
         frames = sum(1 + line["dropped"] for line in lines[robot.name] if line["newest"] is not None)
-        expect(frames >= FRAMES - 1, f"it drives on: {frames} frames")
+        expect(frames > 0.95 * FRAMES, f"it drives on: {frames} frames")
 
 
 if __name__ == "__main__":

@@ -80,6 +80,34 @@ def localises(seqloop: str, work: pathlib.Path) -> None:
                     work / "m.csv"], check=True, capture_output=True)
 
 
+def power_cut(seqloop: str, work: pathlib.Path) -> None:
+    """A robot tells places before the disk has them, and is cut from its power: others know some that its own map has
+    lost, and each once."""
+    work.mkdir()
+    seen = way(600)
+    keeper = Keeper(seqloop, work)
+    runs = 3
+    for run in range(runs):
+        anna = Robot(seqloop, work, "anna", drive(work, "anna", seen, run), "anna.seqloop", save_every_s=1.0)
+        if run == runs - 1:
+            anna.end()
+            break
+        time.sleep(2.0)
+        anna.process.kill()
+        anna.process.wait()
+    time.sleep(1.0)
+    keeper.end()
+    kept, saved = places(work / "kept.seqloop"), places(work / "anna.seqloop")
+    expect(saved.items() <= kept.items(), f"all that its map has is known, to the byte: {len(saved)} places")
+    newest: dict[int, int] = {}
+    for began, frame in saved:
+        newest[began] = max(frame, newest.get(began, 0))
+    ahead = [(began, frame) for began, frame in kept if (began, frame) not in saved]
+    expect(all(frame > newest.get(began, -1) for began, frame in ahead),
+           f"and of what it has lost, only ends of drives: {len(ahead)}")
+    expect(len({began for began, _ in kept}) == runs, "a session for each time that it was switched on")
+
+
 def main(seqloop: str, times: int, work: pathlib.Path) -> None:
     print(f"seed {SEED}")
     chance = random.Random(SEED)
@@ -118,7 +146,7 @@ def main(seqloop: str, times: int, work: pathlib.Path) -> None:
 
     # All robots have gone.
     keeper = Keeper(seqloop, work)
-    late = Robot(seqloop, work, "late", drive(work, "late", seen[:350], 99), "late.seqloop", "--fleet-places", "100000")
+    late = Robot(seqloop, work, "late", drive(work, "late", seen[:FRAMES], 99), "late.seqloop", "--fleet-places", "100000")
     lines = late.end()
     sessions = len({began for began, _ in kept})
     expect(late.counted() == (len(kept), sessions), f"who comes late gets all from the keeper: {late.counted()}")
@@ -134,4 +162,5 @@ def main(seqloop: str, times: int, work: pathlib.Path) -> None:
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         localises(sys.argv[1], pathlib.Path(folder) / "whole")
+        power_cut(sys.argv[1], pathlib.Path(folder) / "cut")
         main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

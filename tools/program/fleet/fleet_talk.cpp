@@ -264,7 +264,7 @@ void FleetTalk::hear() {
       heard_.push({*session, place.frame, place.bytes, {}});
     }
   };
-  while (!heard_.full() && wire_.take(take)) {
+  for (std::size_t i = 0; i < most_a_round && !heard_.full() && wire_.take(take); ++i) {
   }
   for (std::string& line : others_.news()) pass_on(std::move(line));
 }

@@ -117,7 +117,8 @@ void Keeper::hear() {
   const auto gone = [this](std::int64_t began) {
     for (Session& session : sessions_) session.gone |= session.names.began_ns == began;
   };
-  while (waiting_ < most_waiting && wire_.take(hear, gone)) {
+  for (std::size_t i = 0; i < most_a_round && waiting_ < most_waiting; ++i) {
+    if (!wire_.take(hear, gone)) break;
   }
   if (!others_) return;
   for (std::string& line : others_->news()) news_.push_back(std::move(line));

@@ -71,11 +71,10 @@ class Fleet {
   /// Returns when there is something to take, or after the time.
   void wait(Nanoseconds at_most) noexcept;
 
-  /// Takes one place that others have published, oldest first of each session.
+  /// Takes one thing that others have published, oldest first of each session.
   /// @param hear what it is given is valid during the call; the session: null where nothing was
   /// said
-  /// @param gone told of each session that nobody tells any more, on the way to the place; empty:
-  /// nobody asks
+  /// @param gone told of a session instead that nobody tells any more; empty: nobody asks
   /// @return whether there was one
   bool take(const std::function<void(const FleetPlace&, const FleetSession*)>& hear,
             const std::function<void(std::int64_t session)>& gone = {});
