@@ -3,7 +3,6 @@
 #include <limits>
 #include <optional>
 
-#include "sqlite/large_reads.hpp"
 #include "sqlite/little_endian.hpp"
 #include "sqlite/state.hpp"
 
@@ -117,9 +116,7 @@ void MapFile::State::each_row(std::int64_t from, std::int64_t to, const TakeRow&
   Statement rows(database, std::string(block_columns) +
                                "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
   rows.with(from, to);
-  while (rows.step()) {
-    const BlockRow row = block_row(rows);
-    if (!take(row, row.whole(form))) return;
+  while (rows.step() && take(block_row(rows))) {
   }
 }
 
@@ -162,9 +159,9 @@ void MapFile::State::read(std::int64_t from, std::int64_t to, const GiveRows& ro
   Kept kept(static_cast<std::size_t>(form.place_bytes));
   std::vector<BlockRow> wrong;  // told of at the end: until then another thread may be reading
   std::optional<std::int64_t> newest;
-  const auto take_row = [&](const BlockRow& row, bool whole) {
+  const auto take_row = [&](const BlockRow& row) {
     newest = row.first;
-    if (!whole) {
+    if (!row.whole(form)) {
       wrong.push_back(row);
       return static_cast<bool>(told);
     }
@@ -199,10 +196,7 @@ void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
     take(block);
   };
   const GiveRows rows = [this](const TakeRow& take_row) {
-    RowsAhead ahead([this](const TakeRow& keep) {
-      const LargeReads large(state_->database);
-      state_->each_row(0, any, keep);
-    });
+    RowsAhead ahead([this](const TakeRow& keep) { state_->each_row(0, any, keep); });
     ahead.give(take_row);
   };
   state_->read(0, any, rows, counted, damaged);

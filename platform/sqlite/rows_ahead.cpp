@@ -22,7 +22,7 @@ std::span<const std::byte> copied(std::span<const std::byte> from, std::vector<s
 RowsAhead::RowsAhead(const GiveRows& read)
     : spare_(std::deque<Batch>(batches - 1)), thread_([this, read] {
         try {
-          read([this](const BlockRow& row, bool whole) { return keep(row, whole); });
+          read([this](const BlockRow& row) { return keep(row); });
         } catch (...) {
           failed_ = std::current_exception();
         }
@@ -42,7 +42,7 @@ RowsAhead::~RowsAhead() {
 }
 
 /// Copies a row to where the others are; what is there does not move.
-bool RowsAhead::keep(const BlockRow& row, bool whole) {
+bool RowsAhead::keep(const BlockRow& row) {
   const std::size_t more = row.records.size() + row.places.size();
   if (filling_.bytes.capacity() - filling_.bytes.size() < more) {
     if (!filling_.rows.empty() && !hand_over()) return false;
@@ -51,7 +51,7 @@ bool RowsAhead::keep(const BlockRow& row, bool whole) {
   BlockRow kept = row;
   kept.records = copied(row.records, filling_.bytes);
   kept.places = copied(row.places, filling_.bytes);
-  filling_.rows.push_back({kept, whole});
+  filling_.rows.push_back(kept);
   return true;
 }
 
@@ -79,8 +79,8 @@ void RowsAhead::give(const TakeRow& take) {
       batch = std::move(read_.front());
       read_.pop();
     }
-    for (const Read& read : batch.rows) {
-      if (!take(read.row, read.whole)) return;
+    for (const BlockRow& row : batch.rows) {
+      if (!take(row)) return;
     }
     const std::scoped_lock lock(mutex_);
     spare_.push(std::move(batch));

@@ -14,15 +14,14 @@
 
 namespace seqloop::sqlite {
 
-/// Told of a row, which is valid during the call. @param whole whether it is what was saved
-/// @return whether it wants more
-using TakeRow = std::function<bool(const BlockRow&, bool whole)>;
+/// Told of a row, which is valid during the call. @return whether it wants more
+using TakeRow = std::function<bool(const BlockRow&)>;
 /// Tells of rows until there are no more, or none are wanted.
 using GiveRows = std::function<void(const TakeRow&)>;
 
-/// Reads rows, and their checksums, in a thread of its own, a few megabytes ahead of who takes
-/// them: while the disk is waited for, what was read before is dealt with. Allocates: three
-/// megabytes, or as many of the largest rows.
+/// Reads rows in a thread of its own, a few megabytes ahead of who takes them: while the disk is
+/// waited for, what was read before is dealt with. Allocates: three megabytes, or as many of the
+/// largest rows.
 class RowsAhead {
  public:
   /// Begins to read. @param read called in the thread; may throw
@@ -37,18 +36,13 @@ class RowsAhead {
   void give(const TakeRow& take);
 
  private:
-  /// A row, and whether it is whole.
-  struct Read {
-    BlockRow row;
-    bool whole;
-  };
   /// Copies of rows, one behind the other.
   struct Batch {
-    std::vector<Read> rows;
+    std::vector<BlockRow> rows;
     std::vector<std::byte> bytes;
   };
 
-  bool keep(const BlockRow& row, bool whole);
+  bool keep(const BlockRow& row);
   bool hand_over();
 
   std::mutex mutex_;

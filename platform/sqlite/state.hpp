@@ -92,7 +92,7 @@ struct MapFile::State {
   /// The same of rows that somebody else reads. @param told of what is damaged; none: SetupError
   void read(std::int64_t from, std::int64_t to, const GiveRows& rows, const TakeBlock& take,
             const Tell& told) const;
-  /// Their rows, as they are in the file, and whether they are whole. Throws DatabaseError.
+  /// Their rows, as they are in the file. Throws DatabaseError.
   void each_row(std::int64_t from, std::int64_t to, const TakeRow& take) const;
   /// Numbers of places that were removed of them, sorted. Throws DatabaseError.
   [[nodiscard]] std::vector<std::int64_t> removed_of(std::int64_t from, std::int64_t to,
