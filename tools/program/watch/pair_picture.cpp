@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "program/watch/pair_picture.hpp"
 
+#include <exception>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -14,9 +15,7 @@ cv::Mat decode(const std::string& jpeg) {
   return bytes.empty() ? cv::Mat() : opencv::file_codecs().decode(bytes, cv::IMREAD_COLOR);
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> pair_picture(const std::string& left_jpeg,
+std::vector<std::uint8_t> side_by_side(const std::string& left_jpeg,
                                        const std::string& right_jpeg) {
   const cv::Mat left = decode(left_jpeg);
   const cv::Mat right = decode(right_jpeg);
@@ -28,6 +27,18 @@ std::vector<std::uint8_t> pair_picture(const std::string& left_jpeg,
   std::vector<std::uint8_t> bytes;
   opencv::file_codecs().encode(".jpg", pair, bytes);
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> pair_picture(const std::string& left_jpeg,
+                                       const std::string& right_jpeg) {
+  // In a thread of its own, where whatever is thrown would end the run.
+  try {
+    return side_by_side(left_jpeg, right_jpeg);
+  } catch (const std::exception&) {  // OpenCV's readers cannot be loaded, or there is no memory
+    return {};
+  }
 }
 
 }  // namespace seqloop::program
