@@ -592,14 +592,15 @@ TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   EXPECT_NE(plan.out.find("266  descriptor distances"), std::string::npos) << plan.out;
   EXPECT_NE(plan.out.find("255  line sums"), std::string::npos) << "51 rows, 5 velocities";
   EXPECT_NE(plan.out.find("3  frames until the whole map"), std::string::npos) << plan.out;
-  // However large the map, a second of driving, as far as a tenth of the budget goes.
+  // However large the map, a fifth of a second of driving, as far as a tenth of the budget goes.
   const auto rounds = [&](const std::string& flags) {
     const std::string out = expect_done("plan --descriptor-size 64 " + flags).out;
     const std::size_t line = out.find("  frames until the whole map");
     return std::stoul(out.substr(out.rfind('\n', line) + 1));
   };
-  EXPECT_EQ(rounds("--max-places 102400"), 25U);
-  EXPECT_EQ(rounds("--max-places 1000000"), 25U);
+  EXPECT_EQ(rounds("--max-places 20480"), 5U);
+  EXPECT_EQ(rounds("--max-places 102400"), 5U);
+  EXPECT_EQ(rounds("--max-places 2000000"), 5U);
   EXPECT_EQ(rounds("--max-places 10000000"), 25U);
   EXPECT_EQ(rounds("--max-places 20000000"), 50U);
   EXPECT_EQ(rounds("--max-places 1000000 --relocalise-s 2"), 50U);

@@ -33,7 +33,7 @@ struct BenchSettings {
   std::vector<std::size_t> places{3476};
   std::size_t descriptor_size = 735;
   std::size_t ds = 100;
-  double relocalise_s = 1.0;
+  double relocalise_s = 0.2;
   std::size_t rounds = 200;
   std::size_t graph_places = 20'000;
   DriveSettings drive;
@@ -154,7 +154,7 @@ Verb bench_verb(const Peers& peers) {
                      "values in a descriptor, for step, column and matrix [735]");
   verb.options.count("ds", settings->ds, "sequence length [100]");
   verb.options.number("relocalise-s", settings->relocalise_s,
-                      "seconds of driving in which relocalising looks at all places [1]");
+                      "seconds of driving in which relocalising looks at all places [0.2]");
   verb.options.count("rounds", settings->rounds,
                      "times that each is timed, or as often as 20 s allow [200]");
   if (peers.columns) {

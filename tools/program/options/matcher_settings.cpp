@@ -161,7 +161,7 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                }});
   options.number(
       "relocalise-s", settings.relocalise_s,
-      "seconds of driving, at 25 frames a second, in which the whole map is scanned [1]");
+      "seconds of driving, at 25 frames a second, in which the whole map is scanned [0.2]");
   options.count("distances", config.relocalising.distances,
                 "most descriptor distances of a frame while relocalising is on [0: chosen by ds]");
   options.section("Decision");

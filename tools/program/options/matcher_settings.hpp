@@ -26,7 +26,7 @@ struct MatcherSettings {
   std::optional<float> max_uniqueness;
   std::optional<bool> relocalise;  ///< on unless --paper, when nobody says
   bool slice_given = false;
-  double relocalise_s = 1.0;  ///< seconds of driving until the whole map was looked at
+  double relocalise_s = 0.2;  ///< seconds of driving until the whole map was looked at
 };
 
 /// @param settings lives as long as the table
