@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Compares the types that DDS carries with the definitions of ROS 2, and with our own in platform/ros/msg:
-the fields in idl/, and the type hashes in platform/dds/topic_type.cpp (REP 2011).
+the fields in idl/, the type hashes in platform/dds/topic_type.cpp (REP 2011), and what package/ builds.
 
 Usage: types.py ROOT    exit code 1 and a line a fault where something differs.
 """
@@ -142,6 +142,14 @@ def main() -> int:
     for name, found in rows:
         if type_hash(name, definitions) != found:
             faults.append(f"{name}: RIHS01_{type_hash(name, definitions)}, not {found}")
+    # The package that users of ROS 2 build.
+    package = root / "platform/ros/package"
+    version = re.search(r"project\(seqloop VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+    if f"<version>{version}</version>" not in (package / "package.xml").read_text(encoding="utf-8"):
+        faults.append(f"package.xml is not of version {version}")
+    built = re.findall(r"msg/(\w+)\.msg", (package / "CMakeLists.txt").read_text(encoding="utf-8"))
+    if sorted(f"seqloop_msgs/msg/{name}" for name in built) != sorted(set(definitions) - set(STANDARD)):
+        faults.append(f"package/CMakeLists.txt builds {built}")
     print("\n".join(faults) if faults else f"{len(structs)} types and {len(rows)} hashes as defined")
     return 1 if faults else 0
 
