@@ -32,9 +32,7 @@ std::size_t words_of(const DescriptorForm& form) {
   return form.scanned ? DescriptorRows::close_words : 0;
 }
 
-// The same of several queries at once: of this many rows, what is not near any more when the
-// queries go on at the other end of their ring is still in the second-level cache.
-constexpr std::size_t block_abreast = 96;
+constexpr std::size_t block_abreast = DescriptorRows::block_rows;
 
 /// Calls `work(begin, count)` for pieces of at most `most`.
 template <class Work>
@@ -326,7 +324,9 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
 
 double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
-    return static_cast<double>(difference(form_.difference, exact(a), exact(b), form_.size));
+    float difference = 0.0F;
+    compare(*this, a, b, std::span(&difference, 1));
+    return static_cast<double>(difference);
   }
   std::uint16_t difference = 0;
   compare(*this, a, b, std::span(&difference, 1));

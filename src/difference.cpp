@@ -2,36 +2,15 @@
 #include "seqloop/difference.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "kernels/lane_squares.hpp"
 #include "seqloop/detail/lane_sums.hpp"
 
 namespace seqloop {
-namespace {
-
-/// Sums `term(a - b)` over all values, in a fixed order.
-template <class Term>
-double sum_of(std::span<const float> a, std::span<const float> b, Term term) noexcept {
-  // Partial sums move to double before float has lost digits on long descriptors.
-  double sum = 0.0;
-  for (std::size_t first = 0; first < a.size(); first += float_block) {
-    const std::size_t last = std::min(first + float_block, a.size());
-    std::array<float, lanes> partial{};
-    for (std::size_t i = first; i < last; i += lanes) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        partial[lane] += term(a[i + lane] - b[i + lane]);
-      }
-    }
-    for (const float lane : partial) sum += static_cast<double>(lane);
-  }
-  return sum;
-}
-
-}  // namespace
 
 double squared_distance(std::span<const float> a, std::span<const float> b) noexcept {
-  return sum_of(a, b, [](float value) { return value * value; });
+  return kernels::sum_of_squares(a.data(), b.data(), a.size());
 }
 
 float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
@@ -39,8 +18,9 @@ float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
 }
 
 float mean_absolute(std::span<const float> a, std::span<const float> b, std::size_t size) noexcept {
-  const auto absolute = [](float value) { return std::abs(value); };
-  return static_cast<float>(sum_of(a, b, absolute) / static_cast<double>(size));
+  const auto add = [](float value, float sum) { return sum + std::abs(value); };
+  return static_cast<float>(kernels::sum_of_differences(a.data(), b.data(), a.size(), add) /
+                            static_cast<double>(size));
 }
 
 float difference(Difference kind, std::span<const float> a, std::span<const float> b,

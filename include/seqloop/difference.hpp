@@ -25,10 +25,12 @@ inline constexpr std::size_t float_block = 64 * lanes;
 
 /// Euclidean distance. Summed in a fixed order, so that the result does not depend on the width of
 /// the machine's registers, and as squared differences, so that it is exact where vectors are equal
-/// (2 - 2ab is not).
+/// (2 - 2ab is not). A square is added by a fused multiply-add, which rounds once: to the same
+/// value on every processor, and where a processor has none, by what rounds as it does. Lane by
+/// lane, as floats; then lanes 0 to 3 as (0 + 2) + (1 + 3), and so on, and these as doubles.
 /// @param a, b [S] with S a whole number of lanes
 /// @return 0 .. 2 for unit vectors
-/// Work: S subtractions and MACs. Allocates: never. Paper: Algorithm 2.
+/// Work: S subtractions and fused multiply-adds. Allocates: never. Paper: Algorithm 2.
 [[nodiscard]] float euclidean(std::span<const float> a, std::span<const float> b) noexcept;
 
 /// Mean absolute difference, summed in the same fixed order.

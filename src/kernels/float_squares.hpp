@@ -4,141 +4,172 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
+#include <cstring>
 
 #include "seqloop/difference.hpp"
 
 // Highway's headers turn this into the instructions that the file which includes it is compiled
-// for. What is added to what is as in difference.cpp.
+// for. What is added to what is as in lane_squares.hpp.
 namespace seqloop::kernels {
 // Every file has its own, compiled for its processor. NOLINTNEXTLINE(cert-dcl59-cpp)
 namespace {
 
-/// @param sums [rows] written
-template <std::size_t rows>
-void squares_abreast(const float* query, const float* row, std::size_t stride,
-                     double* sums) noexcept {
+/// As many of the lanes of a sum as a register holds.
+using SquaresTag = hwy::HWY_NAMESPACE::CappedTag<float, lanes>;
+using Squares = hwy::HWY_NAMESPACE::Vec<SquaresTag>;
+inline constexpr std::size_t squares_width = hwy::HWY_NAMESPACE::MaxLanes(SquaresTag());
+
+/// Rows whose sums of lanes are added up together.
+inline constexpr std::size_t rows_together = 4;
+
+/// Adds up four lanes each of the sums of four rows, and these in double to what was there.
+/// @param totals [4]
+HWY_INLINE void add_lanes(const Squares* sums, double* totals) noexcept {
   namespace hn = hwy::HWY_NAMESPACE;
-  const hn::CappedTag<float, lanes> some;
-  constexpr std::size_t width = hn::MaxLanes(some);
-  constexpr std::size_t parts = lanes / width;
-  for (std::size_t r = 0; r < rows; ++r) sums[r] = 0.0;
-  for (std::size_t first = 0; first < stride; first += float_block) {
-    const std::size_t last = first + float_block < stride ? first + float_block : stride;
-    hn::Vec<decltype(some)> partial[rows][parts];
-    for (auto& of_row : partial) {
-      for (auto& part : of_row) part = hn::Zero(some);
+  const SquaresTag some;
+  const hn::RepartitionToWide<SquaresTag> pairs;
+  const auto both = [&](Squares a, Squares b) {
+    return hn::BitCast(pairs, hn::Add(hn::InterleaveLower(a, b), hn::InterleaveUpper(some, a, b)));
+  };
+  const auto first = both(sums[0], sums[1]);
+  const auto last = both(sums[2], sums[3]);
+  float fours[squares_width];
+  hn::StoreU(hn::Add(hn::BitCast(some, hn::InterleaveLower(first, last)),
+                     hn::BitCast(some, hn::InterleaveUpper(pairs, first, last))),
+             some, fours);
+  const hn::CappedTag<double, rows_together> wide;
+  const hn::Rebind<float, decltype(wide)> narrow;
+  for (std::size_t row = 0; row < rows_together; row += hn::MaxLanes(wide)) {
+    auto total = hn::LoadU(wide, totals + row);
+    for (std::size_t four = row; four < squares_width; four += rows_together) {
+      total = hn::Add(total, hn::PromoteTo(wide, hn::LoadU(narrow, fours + four)));
     }
-    for (std::size_t i = first; i < last; i += lanes) {
-      for (std::size_t part = 0; part < parts; ++part) {
-        const std::size_t at = i + part * width;
-        const auto here = hn::LoadU(some, query + at);
-        for (std::size_t r = 0; r < rows; ++r) {
-          const auto differ = hn::Sub(here, hn::LoadU(some, row + r * stride + at));
-          partial[r][part] = hn::Add(partial[r][part], hn::Mul(differ, differ));
-        }
-      }
-    }
-    for (std::size_t r = 0; r < rows; ++r) {
-      float values[lanes];
-      for (std::size_t part = 0; part < parts; ++part) {
-        hn::StoreU(partial[r][part], some, values + part * width);
-      }
-      for (const float value : values) sums[r] += static_cast<double>(value);
-    }
+    hn::StoreU(total, wide, totals + row);
   }
 }
 
-void squares(const float* query, const float* rows, std::size_t stride, std::size_t count,
-             double* sums) noexcept {
-  // Memory brings several long rows at a time sooner than one after the other, and short ones in
-  // the order in which they lie there.
-  constexpr std::size_t abreast = 8;
-  constexpr std::size_t long_row = 2048;
-  std::size_t row = 0;
-  for (; stride >= long_row && row + abreast <= count; row += abreast) {
-    squares_abreast<abreast>(query, rows + row * stride, stride, sums + row);
-  }
-  for (; row < count; ++row) squares_abreast<1>(query, rows + row * stride, stride, sums + row);
-}
-
-// Rows whose sums of lanes are added up together.
-constexpr std::size_t tile_rows = 4;
-
-/// Some queries by some rows, a register of sums each; vectors `stride` values apart.
+/// Some queries by some rows, a register of sums each; vectors a stride of values apart.
 struct SquaresTile {
   const float* queries;
+  std::size_t query_stride;
   const float* rows;
-  std::size_t stride;
+  std::size_t row_stride;
   double* sums;
   std::size_t out_stride;
 };
 
-/// Adds what a part of the vectors differs by, at most `float_block` long.
-/// @param length a whole number of lanes
-template <std::size_t queries>
-[[gnu::noinline]] void add_squares(const SquaresTile& tile, std::size_t length) noexcept {
+/// Adds what a part of the vectors differs by, at most `float_block` long. Loops are unrolled in a
+/// function of its own, or GCC would keep some of the sums in memory.
+/// @param length a whole number of lanes   @param fetch `fetch(i)` has memory ready that comes next
+template <std::size_t queries, std::size_t rows, class Fetch>
+[[gnu::noinline]] void add_squares(const SquaresTile& tile, std::size_t length,
+                                   Fetch fetch) noexcept {
   namespace hn = hwy::HWY_NAMESPACE;
-  const hn::CappedTag<float, lanes> some;
-  const hn::FixedTag<float, tile_rows> four;
-  const hn::FixedTag<double, tile_rows> wide;
-  constexpr std::size_t width = hn::MaxLanes(some);
-  for (std::size_t part = 0; part < lanes; part += width) {
-    hn::Vec<decltype(some)> partial[queries][tile_rows];
+  const SquaresTag some;
+  for (std::size_t part = 0; part < lanes; part += squares_width) {
+    Squares sums[queries][rows];
 #pragma GCC unroll 16
-    for (auto& of_query : partial) {
+    for (auto& of_query : sums) {
 #pragma GCC unroll 16
-      for (auto& of_pair : of_query) of_pair = hn::Zero(some);
+      for (auto& sum : of_query) sum = hn::Zero(some);
     }
     for (std::size_t i = part; i < length; i += lanes) {
-      hn::Vec<decltype(some)> row[tile_rows];
+      fetch(i);
+      Squares row[rows];
 #pragma GCC unroll 16
-      for (std::size_t r = 0; r < tile_rows; ++r) {
-        row[r] = hn::LoadU(some, tile.rows + r * tile.stride + i);
+      for (std::size_t r = 0; r < rows; ++r) {
+        row[r] = hn::LoadU(some, tile.rows + r * tile.row_stride + i);
       }
 #pragma GCC unroll 16
       for (std::size_t q = 0; q < queries; ++q) {
-        const auto query = hn::LoadU(some, tile.queries + q * tile.stride + i);
+        const auto query = hn::LoadU(some, tile.queries + q * tile.query_stride + i);
 #pragma GCC unroll 16
-        for (std::size_t r = 0; r < tile_rows; ++r) {
+        for (std::size_t r = 0; r < rows; ++r) {
           const auto differ = hn::Sub(query, row[r]);
-          partial[q][r] = hn::Add(partial[q][r], hn::Mul(differ, differ));
+          sums[q][r] = hn::MulAdd(differ, differ, sums[q][r]);
         }
       }
     }
 #pragma GCC unroll 16
     for (std::size_t q = 0; q < queries; ++q) {
-      float values[width * tile_rows];
-      hn::StoreInterleaved4(partial[q][0], partial[q][1], partial[q][2], partial[q][3], some,
-                            values);
-      double* const to = tile.sums + q * tile.out_stride;
-      auto sums = hn::LoadU(wide, to);
-      for (std::size_t lane = 0; lane < width; ++lane) {
-        sums = hn::Add(sums, hn::PromoteTo(wide, hn::LoadU(four, values + lane * tile_rows)));
+#pragma GCC unroll 16
+      for (std::size_t r = 0; r < rows; r += rows_together) {
+        add_lanes(&sums[q][r], tile.sums + q * tile.out_stride + r);
       }
-      hn::StoreU(sums, wide, to);
     }
+  }
+}
+
+/// One query by some rows of any length.
+/// @param row_stride 0 for a row that counts several times
+template <std::size_t rows>
+void squares_abreast(const float* query, const float* row, std::size_t row_stride,
+                     std::size_t length, double* sums) noexcept {
+  for (std::size_t r = 0; r < rows; ++r) sums[r] = 0.0;
+  for (std::size_t first = 0; first < length; first += float_block) {
+    const std::size_t part = length - first < float_block ? length - first : float_block;
+    add_squares<1, rows>({query + first, 0, row + first, row_stride, sums, 0}, part,
+                         [](std::size_t) {});
+  }
+}
+
+void squares(const float* query, const float* rows, std::size_t stride, std::size_t count,
+             double* sums) noexcept {
+  // Memory brings several long rows at a time sooner than few.
+  constexpr std::size_t abreast = 2 * rows_together;
+  constexpr std::size_t long_row = 2048;
+  std::size_t row = 0;
+  for (; stride >= long_row && row + abreast <= count; row += abreast) {
+    squares_abreast<abreast>(query, rows + row * stride, stride, stride, sums + row);
+  }
+  for (; row + rows_together <= count; row += rows_together) {
+    squares_abreast<rows_together>(query, rows + row * stride, stride, stride, sums + row);
+  }
+  for (; row < count; ++row) {
+    double same[rows_together];
+    squares_abreast<rows_together>(query, rows + row * stride, 0, stride, same);
+    sums[row] = same[0];
   }
 }
 
 void squares_block(const float* queries, std::size_t queries_count, const float* rows,
                    std::size_t stride, std::size_t count, double* sums,
                    std::size_t out_stride) noexcept {
-  namespace hn = hwy::HWY_NAMESPACE;
   // As many sums as there are registers, besides the rows, a query and what they differ by.
-  constexpr std::size_t abreast = hn::MaxLanes(hn::CappedTag<float, lanes>()) == lanes ? 4 : 2;
+  constexpr std::size_t abreast = squares_width == lanes / 2 ? 2 : 4;
   const std::size_t whole_queries = queries_count / abreast * abreast;
-  const std::size_t whole_rows = count / tile_rows * tile_rows;
+  const std::size_t whole_rows = count / rows_together * rows_together;
   for (std::size_t q = 0; q < whole_queries; ++q) {
     for (std::size_t r = 0; r < whole_rows; ++r) sums[q * out_stride + r] = 0.0;
   }
   for (std::size_t first = 0; first < stride; first += float_block) {
     const std::size_t length = stride - first < float_block ? stride - first : float_block;
-    // Some rows stay in the nearest cache while the queries pass by.
-    for (std::size_t r = 0; r < whole_rows; r += tile_rows) {
+    const std::size_t after = first + length < stride ? first + length : 0;
+    // Some rows stay in the nearest cache while the queries pass by: copied, because vectors that
+    // are a whole number of pages long share few places there.
+    float near[rows_together * float_block];
+    for (std::size_t r = 0; r < whole_rows; r += rows_together) {
+      for (std::size_t k = 0; k < rows_together; ++k) {
+        std::memcpy(near + k * length, rows + (r + k) * stride + first, length * sizeof(float));
+      }
+      // What comes next is fetched in quarters: the next rows while queries pass by, the queries'
+      // next values while rows do.
+      const float* next = r + rows_together < whole_rows
+                              ? rows + (r + rows_together) * stride + first
+                              : rows + after;
+      const std::size_t rows_done = r / rows_together;
       for (std::size_t q = 0; q < whole_queries; q += abreast) {
-        add_squares<abreast>({queries + q * stride + first, rows + r * stride + first, stride,
-                              sums + q * out_stride + r, out_stride},
-                             length);
+        const std::size_t queries_done = q / abreast;
+        const float* next_row =
+            next + queries_done / 4 % rows_together * stride + queries_done % 4 * (length / 4);
+        const float* next_query = queries + (q + rows_done % abreast) * stride + after +
+                                  rows_done / abreast % 4 * (length / 4);
+        add_squares<abreast, rows_together>({queries + q * stride + first, stride, near, length,
+                                             sums + q * out_stride + r, out_stride},
+                                            length, [=](std::size_t i) {
+                                              __builtin_prefetch(next_row + i / 4, 0, 2);
+                                              __builtin_prefetch(next_query + i / 4, 0, 2);
+                                            });
       }
     }
   }

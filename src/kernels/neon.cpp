@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
+#ifdef __aarch64__
+#include "kernels/float_squares.hpp"
+#endif
 #include "kernels/highway.hpp"
 #include "kernels/neon_bytes.hpp"
 #include "kernels/sketches.hpp"
@@ -66,5 +69,9 @@ void sketch_together_neon(const std::int8_t* both, const std::uint32_t* chosen, 
 
 constinit const IntegerKernels neon = composed_of<Products, HighwayDifferences, HighwayLanes>(
     "neon", &has_neon, &sketch_together_neon);
+
+#ifdef __aarch64__  // 32-bit ARM: float_vfpv4.cpp
+constinit const FloatColumn float_neon{"neon", &has_neon, &squares, &squares_block};
+#endif
 
 }  // namespace seqloop::kernels

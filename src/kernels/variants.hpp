@@ -23,6 +23,8 @@ extern const IntegerKernels scalar;
 
 extern const FloatColumn float_avx512;
 extern const FloatColumn float_avx2;
+extern const FloatColumn float_neon;
+extern const FloatColumn float_vfpv4;
 extern const FloatColumn float_plain;
 
 // What a variant shares with one that has fewer instructions. Not compiled again: the linker could

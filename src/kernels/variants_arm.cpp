@@ -21,7 +21,7 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
 }
 
 std::span<const FloatColumn* const> float_columns() noexcept {
-  static constexpr std::array variants{&kernels::float_plain};
+  static constexpr std::array variants{&kernels::float_vfpv4, &kernels::float_plain};
   return variants;
 }
 

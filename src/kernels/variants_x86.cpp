@@ -13,7 +13,10 @@ bool has_sse4() noexcept {
   return __builtin_cpu_supports("sse4.2") != 0 && __builtin_cpu_supports("popcnt") != 0;
 }
 
-bool has_avx2() noexcept { return has_sse4() && __builtin_cpu_supports("avx2") != 0; }
+bool has_avx2() noexcept {
+  return has_sse4() && __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
+         __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
+}
 
 bool has_avx_vnni() noexcept {
   if (!has_avx2()) return false;

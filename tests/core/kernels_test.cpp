@@ -2,9 +2,12 @@
 // Each kernel beside its definition.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "core/matcher.hpp"
@@ -30,6 +33,55 @@ TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
     }
     EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
     EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
+  }
+}
+
+/// The order of additions as `euclidean` describes it, by the library's own fused multiply-add.
+double squares_in_order(std::span<const float> a, std::span<const float> b) {
+  double sum = 0.0;
+  for (std::size_t first = 0; first < a.size(); first += 1024) {
+    std::array<float, 16> lane{};
+    for (std::size_t i = first; i < std::min(first + 1024, a.size()); ++i) {
+      const float differ = a[i] - b[i];
+      lane[i % 16] = std::fmaf(differ, differ, lane[i % 16]);
+    }
+    for (std::size_t i = 0; i < 16; i += 4) {
+      sum += static_cast<double>((lane[i] + lane[i + 2]) + (lane[i + 1] + lane[i + 3]));
+    }
+  }
+  return sum;
+}
+
+TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
+  std::mt19937 random(16);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  constexpr std::size_t size = 1040;
+  // Squares below the smallest normal number, sums half way between two floats, sums beyond all.
+  const std::vector<float> scales{1.0F, 1e-3F, 1e-19F, 3e-23F, 1e19F, 3e38F};
+  const std::vector<float> steps{0.0F, 4096.0F, 8.0F};
+  for (const float scale : scales) {
+    for (const float step : steps) {
+      for (int time = 0; time < 50; ++time) {
+        std::vector<float> query(size);
+        std::vector<float> rows(4 * size, 0.0F);
+        const auto drawn = [&](float steps_of_one) {
+          const float value = uniform(random);
+          return scale *
+                 (steps_of_one > 0.0F ? std::round(value * steps_of_one) / steps_of_one : value);
+        };
+        for (float& value : query) value = drawn(step);
+        for (float& value : std::span(rows).first(3 * size)) value = drawn(8.0F);
+        for (const FloatColumn* column : float_columns()) {
+          if (!column->supported()) continue;
+          std::array<double, 4> sums{};
+          column->squares(query.data(), rows.data(), size, sums.size(), sums.data());
+          for (std::size_t row = 0; row < sums.size(); ++row) {
+            ASSERT_EQ(sums[row], squares_in_order(query, std::span(rows).subspan(row * size, size)))
+                << column->name << ' ' << scale << ' ' << step << ' ' << row;
+          }
+        }
+      }
+    }
   }
 }
 

@@ -43,6 +43,10 @@ class DescriptorRows {
   static constexpr std::size_t close_words = 16;
   static constexpr double close_bits = close_words * 64.0;
 
+  /// Rows that several queries are compared with in one go: what is not near any more when the
+  /// queries go on at the other end of their ring is still in the second-level cache.
+  static constexpr std::size_t block_rows = 96;
+
   /// Allocates: from the arena only.
   DescriptorRows(Arena& arena, const RowNames& names, const DescriptorForm& form, std::size_t rows);
 

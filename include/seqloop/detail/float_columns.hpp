@@ -18,7 +18,7 @@ struct FloatColumn {
   /// Sums of squared differences of one vector and consecutive rows.
   /// @param query  [stride]   @param rows [count, stride]   @param stride a whole number of lanes
   /// @param sums   [count] written
-  /// Work: count * stride subtractions and MACs; reads the rows once, front to back.
+  /// Work: count * stride subtractions and fused multiply-adds; reads the rows once, front to back.
   void (*squares)(const float* query, const float* rows, std::size_t stride, std::size_t count,
                   double* sums) noexcept;
 
@@ -29,7 +29,7 @@ struct FloatColumn {
   ///                      q and row r; nothing behind the first `count` of each
   /// @param out_stride    at least count
   /// Work: queries_count times that of `squares`. Reads the rows once as long as `count` of them
-  /// and the queries, 4 KB of each at a time, fit the second cache.
+  /// and the queries, 4 KB of each at a time, fit the second cache. Takes 16 KB of stack.
   void (*squares_block)(const float* queries, std::size_t queries_count, const float* rows,
                         std::size_t stride, std::size_t count, double* sums,
                         std::size_t out_stride) noexcept;

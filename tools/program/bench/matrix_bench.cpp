@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "program/process/available_memory.hpp"
+#include "seqloop/detail/descriptor_rows.hpp"
 #include "seqloop/detail/float_columns.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detector.hpp"
@@ -73,7 +74,7 @@ struct Matched {
 
 /// All differences of floats, squared: what a product of matrices is compared with.
 void compare_all(const Drive& query, const Drive& reference) {
-  constexpr std::size_t abreast = 96;
+  constexpr std::size_t abreast = DescriptorRows::block_rows;
   const FloatColumn& kernels = best_float_column();
   const std::size_t stride = query.values().size() / query.frames();
   std::vector<double> sums(frames_at_once * abreast);
