@@ -257,7 +257,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
     }
   }
   const auto index = static_cast<std::size_t>(top - rows.begin());
-  know_better(*view.map, index);
+  if (on_map) know_better(*view.map, index);
   wrong_.take({WrongRows::Row{top->row, top->wrong}, other, on_map,
                scene.novelty > least_novelty ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
@@ -268,11 +268,11 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
                           top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
 }
 
-/// Which rows were wrong some frames ago, by the trace of what is the likeliest row now.
+/// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the
+/// map.
 void PlaceBelief::know_better(const PlaceMap& map, std::size_t index) noexcept {
   WrongRows::Frame* const then = wrong_.due();
-  constexpr double half = 0.5;
-  if (then == nullptr || !then->likeliest || new_place_ > half) return;
+  if (then == nullptr || !then->likeliest) return;
   std::array<BeliefTraces::Step, WrongRows::lag + 1> steps;
   if (traces_.trace(index, steps) < steps.size()) return;
   const std::size_t right = steps.back().row;

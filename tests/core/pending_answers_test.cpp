@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Which row an answer names, given what sequence search has found.
 #include "seqloop/detail/pending_answers.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "core/seen.hpp"
 #include "core/ways.hpp"
 
 namespace seqloop {
 namespace {
 
-/// Drives a known way whose frame i is row i. Sequence search finds one line for each frame: of
-/// velocity 1, so many rows beside the right one.
-std::vector<Answer> answers_with_lines(std::int64_t beside) {
+/// Drives past a known way. Sequence search finds one line for each frame whose row is given: of
+/// velocity 1 and through that row.
+std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
+                                       const std::vector<std::optional<std::size_t>>& rows) {
   MatcherConfig config;
   config.standardisation.on = false;
   Seen seen(test::way(1, 200, 0.3F, 1), config);
@@ -19,16 +25,14 @@ std::vector<Answer> answers_with_lines(std::int64_t beside) {
   PlaceBelief belief(seen.memory.arena, config);
   PendingAnswers pending(seen.memory.arena, config, lines);
   std::vector<Answer> answers;
-  for (const auto& descriptor : test::way(1, 200, 0.3F, 2)) {
+  for (const auto& descriptor : query) {
     const SceneView view = seen.take(descriptor);
     pending.add(view.newest, true);
     static_cast<void>(belief.observe(view));
     const std::size_t after = lines.window() - 1 - lines.centre();
-    if (view.newest >= lines.window() - 1) {
-      const std::uint64_t centre = view.newest - after;
-      const auto row = static_cast<std::size_t>(static_cast<std::int64_t>(centre) + beside);
-      const FoundLine line{row, 0.5, 0.5, straight};
-      pending.found(centre, std::span(&line, 1));
+    if (view.newest >= lines.window() - 1 && rows[view.newest - after]) {
+      const FoundLine line{*rows[view.newest - after], 0.5, 0.5, straight};
+      pending.found(view.newest - after, std::span(&line, 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
     pending.answer(belief, seen.map, view.newest, 0);
@@ -48,7 +52,11 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
        {Case{0, 0}, {1, 1}, {2, 1}, {5, 3}, {6, 3}, {-1, -1}, {-6, -3}}) {
     SCOPED_TRACE(line);
     std::size_t asked = 0;
-    for (const Answer& answer : answers_with_lines(line)) {
+    std::vector<std::optional<std::size_t>> rows;
+    for (std::int64_t i = 0; i < 200; ++i) {
+      rows.emplace_back(static_cast<std::size_t>(std::max<std::int64_t>(i + line, 0)));
+    }
+    for (const Answer& answer : answers_with_lines(test::way(1, 200, 0.3F, 2), rows)) {
       if (answer.frame < 40 || answer.frame >= 140) continue;
       ++asked;
       ASSERT_EQ(answer.gate, Gate::match);
@@ -57,6 +65,27 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
     }
     EXPECT_EQ(asked, 100U);
   }
+}
+
+/// A row that is left over from an earlier revisit, and that nobody believes in, keeps no frame
+/// from the next one's trace.
+TEST(PendingAnswers, BeginWithTheRevisit) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  const oracle::Vectors foreign = test::way(9, 60, 0.3F, 2);
+  oracle::Vectors query(known.begin(), known.begin() + 60);
+  query.insert(query.end(), foreign.begin(), foreign.end());
+  query.insert(query.end(), known.begin() + 20, known.end());
+  std::vector<std::optional<std::size_t>> rows(query.size());
+  for (std::size_t i = 0; i < 60; ++i) rows[i] = i;
+  for (std::size_t i = 120; i < rows.size(); ++i) rows[i] = i - 100;
+  std::size_t found = 0;
+  for (const Answer& answer : answers_with_lines(query, rows)) {
+    SCOPED_TRACE(answer.frame);
+    const bool matched = answer.gate == Gate::match;
+    if (matched && !rows[answer.frame]) ADD_FAILURE();
+    if (answer.frame >= 120 && answer.frame < 160) found += static_cast<std::size_t>(matched);
+  }
+  EXPECT_EQ(found, 40U);
 }
 
 }  // namespace
