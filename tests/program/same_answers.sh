@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# In whole numbers, the same descriptors give the same match list, to the last byte, whatever
-# processor and kernels compare them: here, and cross-built in an emulator.
+# The same descriptors give the same match list, to the last byte, whatever processor and kernels
+# compare them, in whole numbers and in floats: here, and cross-built in an emulator.
 # Usage: same_answers.sh SEQLOOP SHARED kernels CHOSEN    CHOSEN: seqloop-chosen-kernels
 #        same_answers.sh SEQLOOP SHARED boards BUILDS
 #   SEQLOOP  the program
@@ -42,6 +42,8 @@ cat >options <<'EOF'
 --method a-seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --relocalise off
 --method o-seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --arithmetic sketch
 --method o-seqcnnslam --query day_left.npy --ds 40 --exclude 10
+--method seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --paper
+--method o-seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --arithmetic float
 EOF
 # match_all NAME COMMAND...: all lists after each other, in NAME.csv
 match_all() {
