@@ -53,6 +53,7 @@ class FollowedMap : public ::testing::Test {
     if (at_once_) {
       follower_ = std::thread([this] {
         while (!over_) read_newest();
+        read_newest();  // what came since
       });
     }
     map_->begin(*places_, config_, "test");
