@@ -98,6 +98,8 @@ int publish(fast::DomainParticipant& participant, fast::Topic* topic, bool relia
   qos.resource_limits().max_samples = 2000;
   qos.resource_limits().max_samples_per_instance = 2000;
   qos.reliability().max_blocking_time = {60, 0};
+  // What was lost is asked for at once, not after the usual 3 s.
+  qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
   // Large messages go out in pieces, whose sizes differ.
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
