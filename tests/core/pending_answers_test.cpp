@@ -30,8 +30,9 @@ std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
     pending.add(view.newest, true);
     static_cast<void>(belief.observe(view));
     const std::size_t after = lines.window() - 1 - lines.centre();
-    if (view.newest >= lines.window() - 1 && rows[view.newest - after]) {
-      const FoundLine line{*rows[view.newest - after], 0.5, 0.5, straight};
+    const auto centre = static_cast<std::size_t>(view.newest - after);
+    if (view.newest >= lines.window() - 1 && rows[centre]) {
+      const FoundLine line{*rows[centre], 0.5, 0.5, straight};
       pending.found(view.newest - after, std::span(&line, 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
@@ -82,7 +83,7 @@ TEST(PendingAnswers, BeginWithTheRevisit) {
   for (const Answer& answer : answers_with_lines(query, rows)) {
     SCOPED_TRACE(answer.frame);
     const bool matched = answer.gate == Gate::match;
-    if (matched && !rows[answer.frame]) ADD_FAILURE();
+    if (matched && !rows[static_cast<std::size_t>(answer.frame)]) ADD_FAILURE();
     if (answer.frame >= 120 && answer.frame < 160) found += static_cast<std::size_t>(matched);
   }
   EXPECT_EQ(found, 40U);

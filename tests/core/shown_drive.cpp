@@ -78,7 +78,7 @@ std::optional<std::int64_t> ShownDrive::row_of(std::uint64_t number) const {
 
 const Forms& ShownDrive::place(std::int64_t row) const {
   return config_.use == Use::localise ? reference_[static_cast<std::size_t>(row)]
-                                      : frames_[number(row)];
+                                      : frames_[static_cast<std::size_t>(number(row))];
 }
 
 }  // namespace seqloop::oracle

@@ -47,8 +47,9 @@ int main() {
     (void)seqloop::normalise(descriptor);
     const seqloop::FrameReport report = detector.step(descriptor);
     if (!report.match) continue;
-    std::printf("%llu %zu %zu %.9g %.9g\n", static_cast<unsigned long long>(*report.frame),
-                report.match->place, report.match->head, double{report.match->score},
+    std::printf("%llu %llu %llu %.9g %.9g\n", static_cast<unsigned long long>(*report.frame),
+                static_cast<unsigned long long>(report.match->place),
+                static_cast<unsigned long long>(report.match->head), double{report.match->score},
                 double{report.match->uniqueness});
   }
 }

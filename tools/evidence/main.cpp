@@ -26,7 +26,7 @@ void write(const Matrix& query, const Matrix& reference) {
     const seqloop::FrameReport report = detector.step(query.row(i));
     if (!report.now) continue;
     const seqloop::Evidence& e = *detector.evidence();
-    std::printf("%zu,%zu,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, report.now->place, e.odds, e.lead,
+    std::printf("%zu,%llu,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, 0ULL + report.now->place, e.odds, e.lead,
                 e.contrast, e.age, e.margin);
   }
 }
