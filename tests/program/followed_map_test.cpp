@@ -21,9 +21,9 @@ struct Read {
   std::vector<std::byte> bytes;
   std::optional<std::uint64_t> visits;
 };
-using Places = std::map<std::uint64_t, Read>;  // by number
+using ReadPlaces = std::map<std::uint64_t, Read>;  // by number
 
-void add(Places& places, const SavedPlace& place) {
+void add(ReadPlaces& places, const SavedPlace& place) {
   if (place.statistics) return;
   if (place.visits) {
     ASSERT_TRUE(places.contains(place.number)) << "a visit is told after its place";
@@ -88,7 +88,7 @@ class FollowedMap : public ::testing::Test {
   bool at_once_ = true;
   std::atomic<bool> over_{false};
   std::thread follower_;
-  Places read_;
+  ReadPlaces read_;
   std::uint64_t saved_ = 0;
   std::atomic<int> learnt_{0};
 };
@@ -99,7 +99,7 @@ TEST_F(FollowedMap, PlacesAreReadOnceAndAsTheyAreSaved) {
   EXPECT_EQ(read_.size(), 600U) << "and all were read";
   read_newest();
   EXPECT_GT(learnt_, 0);
-  Places saved;
+  ReadPlaces saved;
   map_->read_saved([&](const SavedPlace& place) { add(saved, place); });
   ASSERT_EQ(read_.size(), saved.size());
   std::size_t visits = 0;
