@@ -13,6 +13,7 @@ struct Chances {
   double begins;
   double ends;
 };
+constexpr Chances usual_chances{0.01, 0.001};
 
 /// Where the pictures go on from one to the next, a frame that is as new as can be is a cut: the
 /// robot was carried away, or the camera was covered. Drives whose frames are all new show none.
@@ -21,7 +22,7 @@ Chances chances_of(double novelty, double least) {
   constexpr double all_new = 0.6;
   constexpr double goes_on = 0.15;
   const bool cut = novelty > all_new && least < goes_on;
-  return cut ? Chances{0.9, 0.95} : Chances{0.01, 0.001};
+  return cut ? Chances{0.9, 0.95} : usual_chances;
 }
 
 /// What a frame has to gain, by novelty, where the belief of the time did not agree with the trace
@@ -88,8 +89,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     forward_[back] = {fresh, on, gone, likelier};
   }
   Backward still{1.0, 1.0, 1.0};
-  constexpr double ends = 0.001;
-  Backward left{0.0, ends, 1.0};
+  Backward left{0.0, usual_chances.ends, 1.0};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     const auto share = [&here](const Backward& after) {

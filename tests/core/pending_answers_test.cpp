@@ -33,7 +33,7 @@ std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
     const auto centre = static_cast<std::size_t>(view.newest - after);
     if (view.newest >= lines.window() - 1 && rows[centre]) {
       const FoundLine line{*rows[centre], 0.5, 0.5, straight};
-      pending.found(view.newest - after, std::span(&line, 1));
+      pending.found(centre, std::span(&line, 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
     pending.answer(belief, seen.map, view.newest, 0);

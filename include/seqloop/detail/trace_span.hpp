@@ -24,10 +24,10 @@ class TraceSpan {
   };
 
   /// @param trace  the newest frame first; at most `most`
-  /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace;
-  /// 0 to
-  ///               all of them. Before that the robot may have been elsewhere, and where roads
-  ///               meet, the frames that lead there look alike: such a frame has to gain more
+  /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace,
+  ///               0 to all. Before them the robot may have been elsewhere, and where roads meet,
+  ///               the frames that lead there look alike: such a frame has to gain nearly as much
+  ///               as those since
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
