@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <opencv2/core/utility.hpp>
 #include <thread>
 
 #include "expect_setup_error.hpp"
 #include "program/drives/drives.hpp"
+#include "seqloop/opencv/threads.hpp"
 #include "synthetic_drive.hpp"
 
 namespace seqloop::program {
@@ -44,6 +46,16 @@ TEST(OpenDescriber, LearnsTheSameOnTwoThreadsAtOnce) {
     EXPECT_EQ(at_once[0], first);
     EXPECT_EQ(at_once[1], second);
   }
+}
+
+TEST(OpenDescriber, ThreadsMayAskForOneThreadAtOnce) {
+  const auto ask = [] {
+    for (int i = 0; i < 100'000; ++i) opencv::use_threads(1);
+  };
+  std::thread other(ask);
+  ask();
+  other.join();
+  EXPECT_EQ(cv::getNumThreads(), 1);
 }
 
 TEST(OpenDescriber, NeedsTheDrivesThatItIsGivenAndNoOthers) {
