@@ -2,7 +2,9 @@
 #include "seqloop/difference.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "kernels/lane_squares.hpp"
 #include "seqloop/detail/lane_sums.hpp"
@@ -32,6 +34,16 @@ bool blank(Difference kind, std::span<const float> descriptor) noexcept {
   const float flat =
       kind == Difference::euclidean || descriptor.empty() ? 0.0F : descriptor.front();
   return std::ranges::all_of(descriptor, [flat](float value) { return value == flat; });
+}
+
+bool all_finite(std::span<const float> values) noexcept {
+  // By their bits and to the end, so that the compiler looks at several at once.
+  constexpr std::uint32_t exponent = 0x7F80'0000U;
+  std::uint32_t others = 0;
+  for (const float value : values) {
+    others |= (std::bit_cast<std::uint32_t>(value) & exponent) == exponent ? 1U : 0U;
+  }
+  return others == 0;
 }
 
 double squared_norm(std::span<const float> vector) noexcept {

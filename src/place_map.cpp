@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
+
+#include "seqloop/difference.hpp"
 
 namespace seqloop {
 namespace {
@@ -65,8 +66,7 @@ bool PlaceMap::begin_session() noexcept {
 }
 
 bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
-  return descriptor.size() == descriptor_size() &&
-         std::ranges::all_of(descriptor, [](float value) { return std::isfinite(value); });
+  return descriptor.size() == descriptor_size() && all_finite(descriptor);
 }
 
 bool PlaceMap::learn(std::span<const float> descriptor) noexcept {

@@ -47,6 +47,9 @@ inline constexpr std::size_t float_block = 64 * lanes;
 /// all zero, or, where pictures are compared (mean absolute), all of one value.
 [[nodiscard]] bool blank(Difference kind, std::span<const float> descriptor) noexcept;
 
+/// Whether no value is infinite or NaN. Work: looks at all values, side by side.
+[[nodiscard]] bool all_finite(std::span<const float> values) noexcept;
+
 /// Sum of the squares. NaN or infinite when a value is; zero only when all are.
 [[nodiscard]] double squared_norm(std::span<const float> vector) noexcept;
 

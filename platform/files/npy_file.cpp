@@ -10,6 +10,7 @@
 #include <string>
 
 #include "files/npy_header.hpp"
+#include "seqloop/difference.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::files {
@@ -87,9 +88,9 @@ Matrix read_npy(const std::filesystem::path& path) {
 }
 
 void check_finite(const Matrix& matrix, const std::string& name) {
+  if (all_finite(matrix.values)) return;
   const auto bad = std::find_if_not(matrix.values.begin(), matrix.values.end(),
                                     [](float value) { return std::isfinite(value); });
-  if (bad == matrix.values.end()) return;
   const auto place = static_cast<std::size_t>(bad - matrix.values.begin());
   throw SetupError(Fault{name,
                          std::string("holds ") + (std::isnan(*bad) ? "NaN" : "infinity") +

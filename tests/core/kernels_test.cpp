@@ -169,6 +169,23 @@ TEST(Blank, IsZeroForVectorsAndFlatForPatches) {
                      std::vector<float>(3, std::numeric_limits<float>::quiet_NaN())));
 }
 
+TEST(Finite, IsWhatHasNoInfinityAndNoNan) {
+  using Limits = std::numeric_limits<float>;
+  EXPECT_TRUE(all_finite({}));
+  for (const std::size_t size : {1U, 7U, 64U, 735U}) {
+    std::vector<float> values(size, -Limits::max());
+    values[size / 2] = Limits::denorm_min();
+    EXPECT_TRUE(all_finite(values)) << size;
+    for (const float bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+      for (const std::size_t place : {std::size_t{0}, size / 2, size - 1}) {
+        std::vector<float> one = values;
+        one[place] = bad;
+        EXPECT_FALSE(all_finite(one)) << bad << " at " << place << " of " << size;
+      }
+    }
+  }
+}
+
 TEST(Contrast, EnhancesByHandAndIsNeverNegative) {
   // Rows 1, 2, 6 have mean 3 and sample deviation sqrt(7); the constant is 2 / sqrt(3).
   const Contrast contrast(2);
