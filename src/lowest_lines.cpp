@@ -27,8 +27,8 @@ std::size_t lowest_lines(const SequenceSearch& search, const PlaceOrder& order,
       const std::size_t first = std::max({run.first, session.first, row - std::min(row, near)});
       const std::size_t last = std::min({run.last, session.last, row + near + 1});
       bool lowest = true;
-      for (std::size_t other = first; other < last; ++other) {
-        lowest = lowest && (scores[other] > score || (scores[other] == score && other >= row));
+      for (std::size_t other = first; lowest && other < last; ++other) {
+        lowest = scores[other] > score || (scores[other] == score && other >= row);
       }
       if (!lowest) continue;
       const double uniqueness = row == best.row ? best.uniqueness : score / best.score;

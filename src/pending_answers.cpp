@@ -35,8 +35,8 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
       patience_(config.patience),
       after_centre_(config.sequence_length - config.sequence_length / 2),
       grows_(config.use == Use::close_loops),
-      least_(static_cast<double>(config.min_probability)),
       span_(arena, PlaceBelief::depth(config)) {
+  accept_from(config.min_probability);
   const bool used = config.decision == Decision::probability;
   const std::size_t kept = std::bit_ceil(PlaceBelief::depth(config) + config.sequence_length + 1);
   waiting_ = arena.take<Waiting>("frames that wait for their answer", used ? kept : 0);
@@ -44,6 +44,11 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
   answers_ = arena.take<Answer>(
       "answers", used ? config.patience + config.frames_at_once + 1 : config.frames_at_once);
   trace_ = arena.take<BeliefTraces::Step>("the likeliest trace", PlaceBelief::depth(config));
+}
+
+void PendingAnswers::accept_from(float least) noexcept {
+  least_ = static_cast<double>(least);
+  least_before_calibration_ = before_calibration(least_);
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
@@ -59,7 +64,7 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
 
 /// That the robot was at the frame's row when it took it.
 double PendingAnswers::probability(const Waiting& waiting) noexcept {
-  return trace_is_right(waiting.odds) * (waiting.left ? waiting.on.left : waiting.on.still);
+  return waiting.right * (waiting.left ? waiting.on.left : waiting.on.still);
 }
 
 void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -73,7 +78,7 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   at(newest).novelty = trace.front().novelty;
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
-  const double odds = belief.remember(log_odds(*evidence_));
+  const double right = trace_is_right(belief.remember(log_odds(*evidence_)));
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
     at(frame).left = true;
   }
@@ -85,14 +90,14 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   const std::size_t frames = std::min(trace.size(), waiting);
   // A frame that stands still tells half as much as one that does not.
   constexpr double half = 0.5;
+  const double least = half * belief.usual_novelty();
+  TraceSpan::take_usual(trace, agreed(map, newest, oldest, trace), belief.usual_gain(), least);
   const std::span<const TraceSpan::On> on =
-      span_.find(trace, agreed(map, newest, oldest, trace),
-                 known ? trace_is_right(before.odds) * before.on.still : 0.0, belief.usual_gain(),
-                 half * belief.usual_novelty(), frames);
+      span_.find(trace, known ? before.right * before.on.still : 0.0, least, frames);
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (frame.waits && frame.frame == newest - back) {
-      look_back(map.order(), frame, trace[back].row, odds, on[back], back);
+      look_back(map.order(), frame, trace[back].row, right, on[back], back);
     }
   }
 }
@@ -121,17 +126,17 @@ std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, st
 
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row,
-                               double odds, const TraceSpan::On& on, std::uint64_t lag) noexcept {
+                               double right, const TraceSpan::On& on, std::uint64_t lag) noexcept {
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
-    const double now = trace_is_right(odds) * on.still;
+    const double now = right * on.still;
     if (probability(waiting) > now) {
       waiting.on = {std::min(waiting.on.still, 1.0 - now), std::min(waiting.on.left, 1.0 - now)};
       return;
     }
   }
-  waiting.odds = same ? std::max(waiting.odds, odds) : odds;
+  waiting.right = same ? std::max(waiting.right, right) : right;
   waiting.on = on;
   waiting.lag = lag;
   waiting.row = row;
@@ -147,6 +152,7 @@ double PendingAnswers::margin(const PlaceMap& map, std::size_t slot, std::size_t
     const bool same = line.row < map.size() && map.same_place(line.row, row);
     std::optional<double>& lowest = same ? here : elsewhere;
     if (!lowest) lowest = line.score;
+    if (here && elsewhere) break;
   }
   constexpr double most = 0.2;
   if (!here) return -most;
@@ -181,13 +187,12 @@ void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
 
 void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
                             std::uint64_t oldest) noexcept {
-  const double least = before_calibration(least_);
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
-    const bool sure =
-        waiting.believed && waiting.lag >= 2 * after_centre_ && probability(waiting) >= least;
+    const bool sure = waiting.believed && waiting.lag >= 2 * after_centre_ &&
+                      probability(waiting) >= least_before_calibration_;
     if (late || sure || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;

@@ -35,7 +35,8 @@ bool used(const MatcherConfig& config) { return config.decision == Decision::pro
 
 PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
     : rows_(arena.take<Hypothesis>("hypotheses", used(config) ? most : 0)),
-      moved_(arena.take<Hypothesis>("hypotheses that have moved", used(config) ? 4 * most : 0)),
+      next_(arena.take<Hypothesis>("hypotheses of the next frame", used(config) ? most : 0)),
+      moved_(arena.take<Moved>("hypotheses that have moved", used(config) ? 3 * most : 0)),
       gauge_(arena, used(config)),
       traces_(arena, depth(config), most) {}
 
@@ -51,10 +52,10 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   novelty_ = scene->novelty;
   move(view.map->order(), novelty_ > least_novelty ? moving : standing);
   double on = 0.0;
-  for (const Hypothesis& moved : moved_.first(moved_count_)) on += moved.mass;
+  for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const double born = coming * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double left = leaving * novelty_;
-  for (Hypothesis& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
+  for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
   give_birth(view, born / static_cast<double>(view.seen->scanned().bits.size()));
   weigh(view, *scene);
@@ -98,19 +99,17 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
       mass += part;
     }
     if (!reached) continue;
-    Hypothesis& moved = moved_[moved_count_++];
-    moved = likeliest < most ? rows_[likeliest] : Hypothesis{};
-    moved.row = row;
-    moved.mass = mass;
-    moved.parent = likeliest < most ? static_cast<std::uint32_t>(likeliest) : BeliefTraces::none;
+    moved_[moved_count_++] = {
+        row, mass, 1.0,
+        likeliest < most ? static_cast<BeliefTraces::Index>(likeliest) : BeliefTraces::none};
   }
   if (moved_count_ > old_most) keep_likeliest();
 }
 
 /// Of what has moved; of equals the first.
 void PlaceBelief::keep_likeliest() noexcept {
-  std::array<double, 3 * most> masses{};
-  for (std::size_t i = 0; i < moved_count_; ++i) masses[i] = moved_[i].mass;
+  std::array<double, 3 * most> masses;
+  std::ranges::transform(moved_.first(moved_count_), masses.begin(), &Moved::mass);
   const auto last = masses.begin() + old_most - 1;
   std::nth_element(masses.begin(), last, masses.begin() + static_cast<std::ptrdiff_t>(moved_count_),
                    std::greater<>());
@@ -132,62 +131,77 @@ void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
   if (mass <= 0.0) return;
   for (const CandidateProposals::Alike& found : view.seen->found()) {
     const auto known = moved_.first(moved_count_);
-    const auto place = std::ranges::lower_bound(known, found.row, {}, &Hypothesis::row);
+    const auto place = std::ranges::lower_bound(known, found.row, {}, &Moved::row);
     if (place != known.end() && place->row == found.row) {
-      const double share = place->mass / (place->mass + mass);
+      place->share = place->mass / (place->mass + mass);
       place->mass += mass;
-      place->gain *= share;
-      place->wrong *= share;
-      place->contrast *= share;
-      place->age *= share;
       continue;
     }
     std::move_backward(place, known.end(), known.end() + 1);
-    *place = Hypothesis{.row = found.row, .mass = mass};
+    *place = {found.row, mass, 1.0, BeliefTraces::none};
     ++moved_count_;
   }
 }
 
-double PlaceBelief::share(const SceneView& view, std::uint64_t frame, std::size_t row) noexcept {
-  ++sketches_;
-  return view.map->rows().look_closely(view.queries->rows(), view.queries->row_of(frame),
-                                       view.map->order().slot(row)) /
-         DescriptorRows::close_bits;
+/// Makes a hypothesis of what has moved.
+void PlaceBelief::take_on(Hypothesis& at, const Moved& moved) const noexcept {
+  at = moved.parent == BeliefTraces::none ? Hypothesis{} : rows_[moved.parent];
+  at.row = moved.row;
+  at.mass = moved.mass;
+  at.parent = moved.parent;
+  at.gain *= moved.share;
+  at.wrong *= moved.share;
+  at.contrast *= moved.share;
+  at.age *= moved.share;
 }
 
 void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
-  std::array<double, most> gains{};
+  const PlaceOrder& order = view.map->order();
+  const DescriptorRows& queries = view.queries->rows();
+  // Share of bits in which a query and a row differ.
+  const auto share = [&](std::size_t query, std::size_t row) {
+    return view.map->rows().look_closely(queries, query, order.slot(row)) /
+           DescriptorRows::close_bits;
+  };
+  const bool has_before = view.newest >= view.oldest + apart;
+  const std::size_t newest = view.queries->row_of(view.newest);
+  const std::size_t before = has_before ? view.queries->row_of(view.newest - apart) : newest;
+  std::array<double, most> gains;
   const double w = scene.novelty;
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
-    Hypothesis& at = rows_[i] = moved_[i];
-    const double here = share(view, view.newest, at.row);
+    Hypothesis& at = next_[i];
+    take_on(at, moved_[i]);
+    const double here = share(newest, at.row);
+    ++sketches_;
     double contrast = 0.0;
-    if (view.newest >= view.oldest + apart) {
-      const CandidateRun session = view.map->order().around(at.row);
-      double around = 2.0 * share(view, view.newest - apart, at.row);
+    if (has_before) {
+      const CandidateRun session = order.around(at.row);
+      double around = 2.0 * share(before, at.row);
       double weight = 2.0;
       if (at.row >= session.first + apart) {
-        around += share(view, view.newest, at.row - apart);
+        around += share(newest, at.row - apart);
         weight += 1.0;
       }
       if (at.row + apart < std::min(view.rows, session.last)) {
-        around += share(view, view.newest, at.row + apart);
+        around += share(newest, at.row + apart);
         weight += 1.0;
       }
+      sketches_ += static_cast<std::size_t>(weight) - 1;
       contrast = (around / weight - here) / scene.deviation;
     }
     const double z = (scene.mean - here) / scene.deviation;
     const double l = std::clamp(z + 0.7 * contrast - scene.bias, -1.5, 3.0);
     gains[i] = l;
-    at.mass *= exponential(w * l);
     at.told = w * l;
+    at.mass *= exponential(at.told);
     at.gain = decay * at.gain + at.told;
     at.contrast = decay * at.contrast + (1.0 - decay) * contrast;
     at.age += w;
     at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
   }
-  sharpen(view.map->order(), scene, std::span(gains).first(count_));
+  std::swap(rows_, next_);
+  sharpen(order, scene, std::span(gains).first(count_));
   double sum = new_place_;
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
@@ -203,19 +217,20 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
 void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
                           std::span<const double> gains) noexcept {
   constexpr std::size_t near = 5;
-  std::array<double, most> sharp{};
+  std::array<double, most> sharp;
   const double weight = 0.2 * (1.0 - scene.novelty);
   for (std::size_t i = 0; i < count_; ++i) {
     sharp[i] = rows_[i].mass * exponential(weight * gains[i]);
   }
-  std::array<double, most> result{};
+  std::array<double, most> result;
   std::size_t first = 0;
+  std::size_t last = 0;
   for (std::size_t i = 0; i < count_; ++i) {
+    while (order.apart(rows_[first].row, rows_[i].row) > near) ++first;
+    while (last < count_ && order.apart(rows_[last].row, rows_[i].row) <= near) ++last;
     double before = 0.0;
     double after = 0.0;
-    while (order.apart(rows_[first].row, rows_[i].row) > near) ++first;
-    for (std::size_t j = first; j < count_ && order.apart(rows_[j].row, rows_[i].row) <= near;
-         ++j) {
+    for (std::size_t j = first; j < last; ++j) {
       before += rows_[j].mass;
       after += sharp[j];
     }
@@ -307,7 +322,7 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
       if (order.apart(row, row + rows) != rows) continue;
       rows_[count_] = rows_[i];
       rows_[count_].row = row + rows;
-      traces_.set(count_++, row + rows, static_cast<std::uint32_t>(i), 0.0);
+      traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0);
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace seqloop {
@@ -46,6 +48,10 @@ constexpr std::array<double, 32> roots_of_2{1.0,
                                             1.9152065613971474,
                                             1.9571441241754002};
 
+constexpr std::array<double, 11> odd_reciprocals{1.0,      1.0 / 3,  1.0 / 5,  1.0 / 7,
+                                                 1.0 / 9,  1.0 / 11, 1.0 / 13, 1.0 / 15,
+                                                 1.0 / 17, 1.0 / 19, 1.0 / 21};
+
 // ln 2 in two pieces: whole multiples of the first have no rounding error.
 constexpr double ln2_high = 6.93147180369123816490e-01;
 constexpr double ln2_low = 1.90821492927058770002e-10;
@@ -55,11 +61,10 @@ constexpr double ln2_low = 1.90821492927058770002e-10;
 double exponential(double x) noexcept {
   constexpr double furthest = 700.0;
   constexpr double log2_e = 1.44269504088896338700;
-  x = std::clamp(x, -furthest, furthest);
+  x = std::min(std::max(x, -furthest), furthest);
   // x = (k + i / 32) ln 2 + r, |r| <= ln 2 / 64.
   constexpr auto pieces = static_cast<std::int64_t>(roots_of_2.size());
-  const double half = x < 0.0 ? -0.5 : 0.5;
-  const auto n = static_cast<std::int64_t>(x * (log2_e * pieces) + half);
+  const auto n = static_cast<std::int64_t>(x * (log2_e * pieces) + std::copysign(0.5, x));
   const std::int64_t k = n >> 5U;
   const double root = roots_of_2[static_cast<std::size_t>(n & (pieces - 1))];
   const auto whole = static_cast<double>(n);
@@ -83,9 +88,8 @@ double logarithm(double x) noexcept {
     ++k;
   }
   const double s = (m - 1.0) / (m + 1.0);
-  constexpr int highest = 21;
   double sum = 0.0;
-  for (int n = highest; n > 0; n -= 2) sum = 1.0 / n + s * s * sum;
+  for (std::size_t n = odd_reciprocals.size(); n-- > 0;) sum = odd_reciprocals[n] + s * s * sum;
   const auto whole = static_cast<double>(k);
   return whole * ln2_high + (2.0 * s * sum + whole * ln2_low);
 }

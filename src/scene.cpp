@@ -65,9 +65,14 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
   if (view.rows < least_rows || bits.size() < std::min(least_rows, view.rows)) return std::nullopt;
   std::ranges::fill(histogram_, 0U);
   for (const std::uint32_t b : bits) ++histogram_[b];
+  const auto any = [](std::uint32_t count) { return count > 0; };
+  const auto likest = static_cast<std::size_t>(
+      std::distance(histogram_.begin(), std::ranges::find_if(histogram_, any)));
+  std::size_t end = histogram_.size();
+  while (!any(histogram_[end - 1])) --end;
   std::uint64_t sum = 0;
   std::uint64_t squares = 0;
-  for (std::size_t b = 0; b < histogram_.size(); ++b) {
+  for (std::size_t b = likest; b < end; ++b) {
     const std::uint64_t pairs = histogram_[b];
     sum += b * pairs;
     squares += b * b * pairs;
@@ -83,13 +88,11 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
       std::max(variance - chance / scanned_bits, least_deviation * least_deviation);
   const double scanned = std::sqrt(spread + chance / scanned_bits);
   // The mean of e^z, which from one count of bits to the next falls by the same share.
-  const auto likest = static_cast<std::size_t>(std::distance(
-      histogram_.begin(), std::ranges::find_if(histogram_, [](std::uint32_t c) { return c > 0; })));
   const double falls = exponential(-1.0 / (scanned_bits * scanned));
   double power = exponential((mean - static_cast<double>(likest) / scanned_bits) / scanned);
   constexpr double highest = 160'000.0;  // about e^12: a few rows alike are no sign of the rest
   double exponentials = 0.0;
-  for (std::size_t b = likest; b < histogram_.size(); ++b) {
+  for (std::size_t b = likest; b < end; ++b) {
     exponentials += static_cast<double>(histogram_[b]) * std::min(power, highest);
     power *= falls;
   }

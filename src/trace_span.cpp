@@ -2,6 +2,7 @@
 #include "seqloop/detail/trace_span.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "seqloop/detail/portable_math.hpp"
 
@@ -39,21 +40,26 @@ double usual_before(std::span<const BeliefTraces::Step> agreed, double usual, do
   return novelty > 0.0 ? std::max(usual, nearly * gained / novelty) : usual;
 }
 
+/// If the trace goes on, and if it was left: side by side, as processors divide two at once.
+using Pair = std::array<double, 2>;
+
 /// How likely the frames that follow are, by where the robot is.
 struct Backward {
-  double fresh;
-  double on;
-  double gone;
+  Pair fresh{1.0, 0.0};
+  Pair on{1.0, usual_chances.ends};
+  Pair gone{1.0, 1.0};
 
   /// To the frame before. @param likelier of the frame that it comes from
   void step(double likelier, const Chances& chances) {
-    const double stays = likelier * on;
-    fresh = (1.0 - chances.begins) * fresh + chances.begins * stays;
-    on = (1.0 - chances.ends) * stays + chances.ends * gone;
-    const double sum = fresh + on + gone;
-    fresh /= sum;
-    on /= sum;
-    gone /= sum;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double stays = likelier * on[i];
+      fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * stays;
+      on[i] = (1.0 - chances.ends) * stays + chances.ends * gone[i];
+      const double sum = fresh[i] + on[i] + gone[i];
+      fresh[i] /= sum;
+      on[i] /= sum;
+      gone[i] /= sum;
+    }
   }
 };
 
@@ -63,17 +69,24 @@ TraceSpan::TraceSpan(Arena& arena, std::size_t most)
     : forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
-                                               std::size_t agreed, double before, double usual,
-                                               double least, std::size_t asked) noexcept {
+void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, double usual,
+                           double least) noexcept {
   const double early = usual_before(trace.first(agreed), usual, least);
+  for (std::size_t back = 0; back < trace.size(); ++back) {
+    BeliefTraces::Step& step = trace[back];
+    step.gain -= (back < agreed ? usual : early) * std::max(step.novelty, least);
+  }
+}
+
+std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
+                                               double before, double least,
+                                               std::size_t asked) noexcept {
   double fresh = 1.0 - before;
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
-    const double elsewhere = (back < agreed ? usual : early) * std::max(step.novelty, least);
-    const double likelier = exponential(step.gain - elsewhere);
+    const double likelier = exponential(step.gain);
     const Chances chances = chances_of(step.novelty, least);
     if (back + 1 < trace.size()) {
       gone += on * chances.ends;
@@ -88,18 +101,16 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     gone /= sum;
     forward_[back] = {fresh, on, gone, likelier};
   }
-  Backward still{1.0, 1.0, 1.0};
-  Backward left{0.0, usual_chances.ends, 1.0};
+  Backward after;
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
-    const auto share = [&here](const Backward& after) {
-      const double is = here.on * after.on;
-      return is / (is + here.fresh * after.fresh + here.gone * after.gone);
-    };
-    on_[back] = {share(still), share(left)};
-    const Chances chances = chances_of(trace[back].novelty, least);
-    still.step(here.likelier, chances);
-    left.step(here.likelier, chances);
+    Pair share;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double is = here.on * after.on[i];
+      share[i] = is / (is + here.fresh * after.fresh[i] + here.gone * after.gone[i]);
+    }
+    on_[back] = {share[0], share[1]};
+    after.step(here.likelier, chances_of(trace[back].novelty, least));
   }
   return on_.first(asked);
 }

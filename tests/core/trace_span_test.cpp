@@ -40,7 +40,9 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
       novelty += std::max(step_of(i).novelty, least);
     }
     const double early = agreed == 0 ? usual : std::max(usual, 0.9 * gained / novelty);
-    const auto found = span.find(trace, agreed, before, usual, least, asked);
+    std::vector<BeliefTraces::Step> less = trace;
+    TraceSpan::take_usual(less, agreed, usual, least);
+    const auto found = span.find(less, before, least, asked);
     ASSERT_EQ(found.size(), asked);
     // On the trace in [first, last).
     std::vector<double> still(frames);
@@ -91,7 +93,7 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
   }
   for (const double least : {0.05, 0.25}) {
     SCOPED_TRACE(least);
-    const auto on = span.find(trace, trace.size(), 0.0, 0.0, least, trace.size());
+    const auto on = span.find(trace, 0.0, least, trace.size());
     const bool sees_cuts = least < 0.15;
     EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
@@ -107,9 +109,13 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5});
     trace.resize(30, {0, gain, 0.5});
-    EXPECT_GT(span.find(trace, 30, 0.0, 0.1, 0.25, 30)[29].still, 0.5);
-    EXPECT_EQ(span.find(trace, 20, 0.0, 0.1, 0.25, 30)[25].still > 0.5, gain > 0.5);
-    EXPECT_GT(span.find(trace, 20, 0.0, 0.1, 0.25, 30)[15].still, 0.99);
+    constexpr double least = 0.25;
+    std::vector<BeliefTraces::Step> all = trace;
+    TraceSpan::take_usual(all, 30, 0.1, least);
+    EXPECT_GT(span.find(all, 0.0, least, 30)[29].still, 0.5);
+    TraceSpan::take_usual(trace, 20, 0.1, least);
+    EXPECT_EQ(span.find(trace, 0.0, least, 30)[25].still > 0.5, gain > 0.5);
+    EXPECT_GT(span.find(trace, 0.0, least, 30)[15].still, 0.99);
   }
 }
 
@@ -117,8 +123,8 @@ TEST(TraceSpan, NoTraceIsTooLong) {
   TestArena memory;
   TraceSpan span(memory.arena, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
-    const std::vector<BeliefTraces::Step> trace(1001, {0, gain, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, trace.size(), 0.0, 0.1, 0.3, trace.size())) {
+    const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5});
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.3, trace.size())) {
       EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
       EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
     }

@@ -13,10 +13,14 @@ namespace seqloop {
 /// The rows that hypotheses came through, frame by frame: a ring of the newest frames.
 class BeliefTraces {
  public:
-  /// The parent of a hypothesis that has come onto the map.
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  /// Which hypothesis of a frame: a byte, so that what a trace is followed by stays in the nearest
+  /// cache.
+  using Index = std::uint8_t;
 
-  /// @param depth frames that are kept. @param width hypotheses of a frame, at most
+  /// The parent of a hypothesis that has come onto the map.
+  static constexpr Index none = std::numeric_limits<Index>::max();
+
+  /// @param depth frames that are kept. @param width hypotheses of a frame, at most `none`
   /// Allocates: from the arena only.
   BeliefTraces(Arena& arena, std::size_t depth, std::size_t width);
 
@@ -32,7 +36,10 @@ class BeliefTraces {
 
   /// A hypothesis of the newest frame.
   /// @param parent its index at the frame before, or none
-  void set(std::size_t index, std::size_t row, std::uint32_t parent, double gain) noexcept;
+  void set(std::size_t index, std::size_t row, Index parent, double gain) noexcept {
+    parents_[newest_ * width_ + index] = parent;
+    steps_[newest_ * width_ + index] = {static_cast<std::uint32_t>(row), static_cast<float>(gain)};
+  }
 
   /// The way that a row of the newest frame was come by, frame by frame back from there.
   /// @param out written, as many as there are at most. @return how many. Work: as many.
@@ -49,15 +56,13 @@ class BeliefTraces {
  private:
   struct Traced {
     std::uint32_t row;
-    std::uint32_t parent;
     float gain;
   };
-  [[nodiscard]] std::size_t slot(std::uint64_t back) const noexcept {
-    return static_cast<std::size_t>((frames_ - 1 - back) % novelties_.size());
-  }
 
   std::size_t width_;
-  std::uint64_t frames_ = 0;
+  std::size_t frames_ = 0;      // that are held
+  std::size_t newest_ = 0;      // where it is
+  std::span<Index> parents_;    // [depth, width]
   std::span<Traced> steps_;     // [depth, width]
   std::span<float> novelties_;  // [depth]
 };

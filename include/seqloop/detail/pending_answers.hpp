@@ -35,7 +35,7 @@ class PendingAnswers {
   PendingAnswers(Arena& arena, const MatcherConfig& config, const Trajectories& trajectories);
 
   /// From here on answers are accepted from this probability on. @param least above 0 .. 1
-  void accept_from(float least) noexcept { least_ = static_cast<double>(least); }
+  void accept_from(float least) noexcept;
 
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;
@@ -87,7 +87,7 @@ class PendingAnswers {
     bool believed;          // whether it lies on a trace
     bool left;              // by the trace of the newest frame that was looked back from
     std::size_t row;        // there
-    double odds;            // best log-odds of the trace
+    double right;           // that the trace is right: the most that was ever said
     TraceSpan::On on;       // that the frame lies on it
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
     double new_place;       // belief in none, as it came
@@ -111,7 +111,7 @@ class PendingAnswers {
                    std::span<BeliefTraces::Step> trace) noexcept;
   [[nodiscard]] std::size_t agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
                                    std::span<const BeliefTraces::Step> trace) noexcept;
-  void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double odds,
+  void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double right,
                  const TraceSpan::On& on, std::uint64_t lag) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
@@ -126,6 +126,7 @@ class PendingAnswers {
   std::size_t after_centre_;
   bool grows_;
   double least_;
+  double least_before_calibration_;
   std::uint64_t first_ = 0;  // frame that may still wait
   std::uint64_t end_ = 0;    // after the newest
   std::size_t given_ = 0;

@@ -93,18 +93,26 @@ class PlaceBelief {
     double contrast = 0.0;  // decaying mean
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
-    std::uint32_t parent = BeliefTraces::none;
+    BeliefTraces::Index parent = BeliefTraces::none;
+  };
+
+  /// A hypothesis on its way to the next frame.
+  struct Moved {
+    std::size_t row;
+    double mass;
+    double share;  // of what it has gained that stays
+    BeliefTraces::Index parent;
   };
 
   static void prefetch(const SceneView& view) noexcept;
   void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
+  void take_on(Hypothesis& at, const Moved& moved) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene) noexcept;
   void know_better(const PlaceMap& map, std::size_t index) noexcept;
-  [[nodiscard]] double share(const SceneView& view, std::uint64_t frame, std::size_t row) noexcept;
 
   std::size_t sketches_ = 0;
   double new_place_ = 1.0;
@@ -113,8 +121,9 @@ class PlaceBelief {
   std::size_t count_ = 0;
   std::size_t moved_count_ = 0;
   std::optional<Likeliest> likeliest_;
-  std::span<Hypothesis> rows_;   // [most] in order of row
-  std::span<Hypothesis> moved_;  // [4 most]
+  std::span<Hypothesis> rows_;  // [most] in order of row
+  std::span<Hypothesis> next_;  // [most] of the frame that is being weighed
+  std::span<Moved> moved_;      // [3 most]
   SceneGauge gauge_;
   BeliefTraces traces_;
 };
