@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "seqloop/detail/portable_math.hpp"
@@ -28,6 +27,35 @@ constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
 constexpr std::size_t born_most = 16;
 constexpr std::size_t old_most = PlaceBelief::most - born_most;
+
+/// The n-th highest value, and how many are higher. Unlike `std::nth_element` it asks of no value
+/// where to go on: processors guess such answers wrong.
+/// @param values in any order afterwards. @param n 1 .. as many as there are
+std::pair<double, std::size_t> highest(std::span<double> values, std::size_t n) noexcept {
+  std::size_t first = 0;
+  std::size_t last = values.size();
+  while (true) {
+    const double middle = values[first + (last - first) / 2];
+    // Higher ones to the front, then those that are equal.
+    const auto gather = [&](std::size_t from, auto goes_first) {
+      for (std::size_t i = from; i < last; ++i) {
+        const double value = values[i];
+        values[i] = values[from];
+        values[from] = value;
+        from += static_cast<std::size_t>(goes_first(value));
+      }
+      return from;
+    };
+    const std::size_t higher = gather(first, [&](double value) { return value > middle; });
+    if (higher >= n) {
+      last = higher;
+      continue;
+    }
+    const std::size_t equal = gather(higher, [&](double value) { return !(value < middle); });
+    if (equal >= n) return {middle, higher};
+    first = equal;
+  }
+}
 
 bool used(const MatcherConfig& config) { return config.decision == Decision::probability; }
 
@@ -110,12 +138,8 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
 void PlaceBelief::keep_likeliest() noexcept {
   std::array<double, 3 * most> masses;
   std::ranges::transform(moved_.first(moved_count_), masses.begin(), &Moved::mass);
-  const auto last = masses.begin() + old_most - 1;
-  std::nth_element(masses.begin(), last, masses.begin() + static_cast<std::ptrdiff_t>(moved_count_),
-                   std::greater<>());
-  const double least = *last;
-  std::size_t equals =
-      static_cast<std::size_t>(std::count(masses.begin(), masses.begin() + old_most, least));
+  const auto [least, more] = highest(std::span(masses).first(moved_count_), old_most);
+  std::size_t equals = old_most - more;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < moved_count_; ++i) {
     if (moved_[i].mass < least || (moved_[i].mass == least && equals == 0)) continue;
@@ -191,7 +215,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
       contrast = (around / weight - here) / scene.deviation;
     }
     const double z = (scene.mean - here) / scene.deviation;
-    const double l = std::clamp(z + 0.7 * contrast - scene.bias, -1.5, 3.0);
+    const double l = std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0);
     gains[i] = l;
     at.told = w * l;
     at.mass *= exponential(at.told);

@@ -173,13 +173,6 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
   }
 }
 
-bool PlaceMap::same_first_visit(std::size_t a, std::size_t b) const noexcept {
-  const std::uint64_t first = first_visit(a);
-  const std::uint64_t second = first_visit(b);
-  return (first < second ? second - first : first - second) <= beside &&
-         order_.session_of_number(first) == order_.session_of_number(second);
-}
-
 PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
                                std::uint64_t frame, std::size_t keep) noexcept {
   Taken taken;

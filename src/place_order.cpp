@@ -36,7 +36,7 @@ bool PlaceOrder::begin_session() noexcept {
 }
 
 std::size_t PlaceOrder::session_of_number(std::uint64_t number) const noexcept {
-  return sessions_ == 1 ? 0 : last_begun(number, &Begin::number);
+  return last_begun(number, &Begin::number);
 }
 
 std::size_t PlaceOrder::row_of_frame(std::uint64_t frame) const noexcept {

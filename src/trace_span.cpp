@@ -40,7 +40,14 @@ double usual_before(std::span<const BeliefTraces::Step> agreed, double usual, do
   return novelty > 0.0 ? std::max(usual, nearly * gained / novelty) : usual;
 }
 
-/// If the trace goes on, and if it was left: side by side, as processors divide two at once.
+/// Whether a sum of what is weighed leaves what can be counted. It is brought back to 1 then only:
+/// shares do not change by it, and a frame would wait for the division of the one before.
+bool is_far(double sum) {
+  constexpr double far = 1e60;
+  return sum > far || sum * far < 1.0;
+}
+
+/// If the trace goes on, and if it was left.
 using Pair = std::array<double, 2>;
 
 /// How likely the frames that follow are, by where the robot is.
@@ -56,6 +63,7 @@ struct Backward {
       fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * stays;
       on[i] = (1.0 - chances.ends) * stays + chances.ends * gone[i];
       const double sum = fresh[i] + on[i] + gone[i];
+      if (!is_far(sum)) continue;
       fresh[i] /= sum;
       on[i] /= sum;
       gone[i] /= sum;
@@ -94,11 +102,11 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       fresh *= 1.0 - chances.begins;
     }
     on *= likelier;
-    // Their sum is kept at 1, so that no trace is too long to be counted.
-    const double sum = fresh + on + gone;
-    fresh /= sum;
-    on /= sum;
-    gone /= sum;
+    if (const double sum = fresh + on + gone; is_far(sum)) {
+      fresh /= sum;
+      on /= sum;
+      gone /= sum;
+    }
     forward_[back] = {fresh, on, gone, likelier};
   }
   Backward after;

@@ -161,7 +161,13 @@ class PlaceMap {
   PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
            ArenaMemory&& memory);
 
-  [[nodiscard]] bool same_first_visit(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] bool same_first_visit(std::size_t a, std::size_t b) const noexcept {
+    const std::uint64_t first = first_visit(a);
+    const std::uint64_t second = first_visit(b);
+    return (first < second ? second - first : first - second) <= beside &&
+           (order_.sessions() == 1 ||
+            order_.session_of_number(first) == order_.session_of_number(second));
+  }
   [[nodiscard]] bool fits(std::span<const float> descriptor) const noexcept;
   [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
   [[nodiscard]] std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
