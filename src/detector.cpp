@@ -276,9 +276,11 @@ bool Detector::take_query(std::span<const float> descriptor) noexcept {
 /// Closing loops: the newest frame becomes a place, if the map has room or makes some.
 bool Detector::become_place() noexcept {
   // Places that the newest frames still need as they were: those that are no candidates yet.
-  const std::size_t keep = std::max(keep_, config_.exclude + config_.sequence_length);
+  const std::size_t keep = std::max(keep_.value_or(0), config_.exclude + config_.sequence_length);
   const PlaceMap::Taken taken =
       map_->take(queries_.rows(), queries_.row_of(queries_.newest()), queries_.newest(), keep);
+  // Several frames may come before who needs the newest places hears of them.
+  if (taken.slot && keep_) ++*keep_;
   if (taken.removed) {
     slices_.forget(*taken.slot);
     ranges_.removed(*taken.removed);

@@ -107,8 +107,9 @@ class Detector {
   /// drive starts from. `frames() == 0` where nothing is.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
-  /// A full map may forget places, but none of the newest `places`: they are still needed
-  /// elsewhere, or are to be saved first. 0 at first.
+  /// From now on a full map may forget places, but none of the newest `places`, and none that come
+  /// before this is called again: they are still needed elsewhere, or are to be saved first. As
+  /// long as it is not called, any may go.
   void keep_newest(std::size_t places) noexcept { keep_ = places; }
 
   /// What is believed at the newest frame, and what for: where the decision is by probability.
@@ -150,8 +151,8 @@ class Detector {
   ArenaMemory memory_;
   MatcherConfig config_;
   PlaceMap* map_;
-  std::size_t keep_ = 0;            // newest places that somebody else needs
-  std::uint64_t window_began_ = 0;  // the first frame that is matched together with the newest
+  std::optional<std::size_t> keep_;  // newest places that somebody else needs; none: nobody does
+  std::uint64_t window_began_ = 0;   // the first frame that is matched together with the newest
   Trajectories trajectories_;
   RunningStatistics statistics_;
   QueryHistory queries_;

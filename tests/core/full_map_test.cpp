@@ -217,6 +217,44 @@ TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
 }
 
 // Places that are no candidates yet do not go.
+TEST(FullMap, WhatIsNeededElsewhereStaysHoweverManyFramesComeAtOnce) {
+  constexpr std::size_t capacity = 120;
+  constexpr std::size_t at_once = 20;
+  constexpr std::size_t needed = 60;
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.exclude = 30;
+  config.full_map = FullMap::forget_oldest;
+  config.frames_at_once = at_once;
+  PlaceMap map(config, {capacity, 64});
+  Detector detector(config, map);
+  const oracle::Vectors seen = laps(2, 200);
+  std::vector<FrameReport> reports(at_once);
+  const auto take = [&](std::size_t first) {
+    const std::vector<std::span<const float>> frames(
+        seen.begin() + static_cast<std::ptrdiff_t>(first),
+        seen.begin() + static_cast<std::ptrdiff_t>(first + at_once));
+    EXPECT_EQ(detector.steps(frames, reports), at_once);
+  };
+  const auto first_place = [&map] { return map.order().number(0); };
+  std::size_t frame = 0;
+  for (; frame < 2 * capacity; frame += at_once) take(frame);
+  EXPECT_EQ(first_place(), capacity) << "nobody needs any";
+
+  detector.keep_newest(needed);
+  const std::uint64_t oldest_needed = map.order().next_number() - needed;
+  for (; frame < 2 * capacity + 80; frame += at_once) take(frame);
+  EXPECT_EQ(first_place(), oldest_needed);
+  EXPECT_TRUE(reports.back().map_full) << "rather no place than one that nobody has saved";
+  detector.skip(5);
+  EXPECT_EQ(first_place(), oldest_needed) << "nor for frames that never came";
+  EXPECT_EQ(map.order().next_number(), oldest_needed + capacity);
+
+  detector.keep_newest(needed);
+  take(frame);
+  EXPECT_EQ(first_place(), oldest_needed + at_once) << "now they may go";
+}
+
 TEST(FullMap, AMapWithoutRoomForCandidatesIsRefused) {
   for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
     MatcherConfig config = paper(Candidates::adaptive, 5, Use::close_loops);

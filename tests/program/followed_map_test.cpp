@@ -60,13 +60,21 @@ class FollowedMap : public ::testing::Test {
     Detector detector(config_, *places_);
     std::size_t full = 0;
     std::uint64_t frame = 0;
+    std::vector<FrameReport> reports(config_.frames_at_once);
     for (unsigned lap = 0; lap < 3; ++lap) {
-      for (const auto& seen : oracle::drive(1, 200, size, 0.1F + 0.01F * static_cast<float>(lap))) {
-        const FrameReport report = detector.step(seen);
-        map_->note(detector, report.newest, 7 + frame, static_cast<double>(frame) / 10, {},
-                   report.answers);
-        full += report.map_full;
-        ++frame;
+      const oracle::Vectors seen =
+          oracle::drive(1, 200, size, 0.1F + 0.01F * static_cast<float>(lap));
+      for (std::size_t taken = 0; taken < seen.size();) {
+        const std::vector<std::span<const float>> rest(
+            seen.begin() + static_cast<std::ptrdiff_t>(taken), seen.end());
+        const std::size_t count = detector.steps(rest, reports);
+        for (const FrameReport& report : std::span(reports).first(count)) {
+          map_->note(detector, report.newest, 7 + frame, static_cast<double>(frame) / 10, {},
+                     report.answers);
+          full += report.map_full;
+          ++frame;
+        }
+        taken += count;
       }
     }
     saved_ = map_->saved();
@@ -119,6 +127,17 @@ TEST_F(FollowedMap, AFullMapForgetsNothingThatWasNotRead) {
   read_newest();
   ASSERT_EQ(read_.size(), 250U);
   EXPECT_EQ(read_.begin()->second.frame, 7U) << "as the source counts";
+}
+
+TEST_F(FollowedMap, AFullMapForgetsNothingThatWasNotReadWhenFramesComeTogether) {
+  at_once_ = false;
+  config_.frames_at_once = 50;
+  settings_.save_every_s = 3600.0;
+  EXPECT_EQ(drive(250), 350U) << "frames become no places";
+  read_newest();
+  ASSERT_EQ(read_.size(), 250U);
+  EXPECT_EQ(read_.begin()->first, 0U);
+  EXPECT_EQ(read_.rbegin()->first, 249U);
 }
 
 }  // namespace

@@ -180,6 +180,51 @@ TEST_F(OthersTest, VisitsAreOfPlacesThatWereTakenIn) {
   EXPECT_FALSE(same(1000, 0, 77, 0)) << "ours";
 }
 
+TEST_F(OthersTest, VisitsWaitForPlacesThatAreStillOnTheirWay) {
+  const auto visit = [](std::int64_t session, std::uint64_t frame, std::int64_t visited,
+                        std::uint64_t then) {
+    return dds::FleetPlace{session, frame, 0, {}, {{visited, then}}, {}};
+  };
+  EXPECT_EQ(hear(1000, 0, &about_), 0U);
+  others_.wait_for_places(visit(1000, 0, 2000, 3));
+  others_.wait_for_places(visit(1000, 2, 2000, 1));
+  others_.wait_for_places(visit(1000, 0, 2000, 2));
+  others_.wait_for_places(visit(1000, 0, 77, 2));  // ours: it never comes
+  EXPECT_FALSE(others_.next_visit());
+  EXPECT_EQ(hear(2000, 2, &about_), 1U);
+  auto come = others_.next_visit();
+  ASSERT_TRUE(come);
+  EXPECT_EQ(come->session, 1000);
+  EXPECT_EQ(come->frame, 0U);
+  EXPECT_EQ(come->visit->session, 2000);
+  EXPECT_EQ(come->visit->frame, 2U);
+  EXPECT_FALSE(others_.next_visit());
+  EXPECT_EQ(hear(1000, 2), 0U);
+  EXPECT_EQ(hear(2000, 3), 1U);
+  come = others_.next_visit();
+  ASSERT_TRUE(come) << "those that came early first";
+  EXPECT_EQ(come->visit->frame, 3U);
+  come = others_.next_visit();
+  ASSERT_TRUE(come);
+  EXPECT_EQ(come->frame, 2U);
+  EXPECT_FALSE(others_.next_visit());
+}
+
+TEST_F(OthersTest, VisitsOfWhatNeverComesAreBounded) {
+  EXPECT_EQ(hear(1000, 0, &about_), 0U);
+  for (std::uint64_t frame = 0; frame < 5'000; ++frame) {
+    others_.wait_for_places({1000, 0, 0, {}, {{2000, frame}}, {}});
+    EXPECT_FALSE(others_.next_visit());
+  }
+  EXPECT_EQ(hear(2000, 10'000, &about_), 1U);
+  for (std::uint64_t frame = 5'000 - 1024; frame < 5'000; ++frame) {
+    const auto come = others_.next_visit();
+    ASSERT_TRUE(come);
+    ASSERT_EQ(come->visit->frame, frame) << "the newest are kept";
+  }
+  EXPECT_FALSE(others_.next_visit());
+}
+
 TEST_F(OthersTest, SessionsWithoutEndAreBounded) {
   for (std::int64_t session = 0; session < 5'000; ++session) {
     static_cast<void>(hear(1'000'000 + session, 0, &about_));

@@ -259,12 +259,19 @@ void FleetTalk::hear() {
     if (place.visit) {
       if (const auto same = others_.same_place(place)) {
         heard_.push({same->session, place.frame, {}, {{same->visited, place.visit->frame}}});
+      } else if (!newest_told_ || place.visit->session != newest_told_->session) {
+        others_.wait_for_places(place);
       }
     } else if (const auto session = others_.hear(place, about)) {
       heard_.push({*session, place.frame, place.bytes, {}});
     }
   };
   for (std::size_t i = 0; i < most_a_round && !heard_.full() && wire_.take(take); ++i) {
+  }
+  while (!heard_.full()) {
+    const std::optional<dds::FleetPlace> visit = others_.next_visit();
+    if (!visit) break;
+    take(*visit, nullptr);
   }
   for (std::string& line : others_.news()) pass_on(std::move(line));
 }

@@ -121,6 +121,11 @@ void Keeper::hear() {
     if (!wire_.take(hear, gone)) break;
   }
   if (!others_) return;
+  while (waiting_ < most_waiting) {
+    const std::optional<dds::FleetPlace> visit = others_->next_visit();
+    if (!visit) break;
+    this->hear(*visit, nullptr);
+  }
   for (std::string& line : others_->news()) news_.push_back(std::move(line));
 }
 
@@ -140,7 +145,8 @@ void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) 
   }
   if (place.visit) {
     const auto same = others_->same_place(place);
-    if (!same || links_.size() >= links_a_place * others_->places()) return;
+    if (!same) return others_->wait_for_places(place);
+    if (links_.size() >= links_a_place * others_->places()) return;
     Session& session = begin(same->session);
     const std::uint64_t number = number_of(session.id, place.frame);
     const std::uint64_t other = number_of(begin(same->visited).id, place.visit->frame);

@@ -16,6 +16,9 @@ namespace {
 // No camera sees more; what is told faster is no drive.
 constexpr std::uint64_t most_a_second = 1000;
 
+// Visits that wait for their places: seconds' worth of many robots.
+constexpr std::size_t most_early = 1024;
+
 // A name is for people.
 constexpr std::size_t longest_name = 100;
 
@@ -100,6 +103,32 @@ std::optional<Others::SamePlace> Others::same_place(const dds::FleetPlace& place
   const auto visited = has(place.visit->session, place.visit->frame);
   if (!session || !visited) return std::nullopt;
   return SamePlace{*session, *visited};
+}
+
+void Others::wait_for_places(const dds::FleetPlace& visit) {
+  if (!may_be_heard(visit.session) || !may_be_heard(visit.visit->session)) return;
+  if (early_.size() == most_early) {
+    early_.pop_front();
+    looked_at_ -= std::min<std::size_t>(looked_at_, 1);
+  }
+  early_.push_back(visit);
+}
+
+std::optional<dds::FleetPlace> Others::next_visit() {
+  if (std::exchange(taken_then_, taken_) != taken_) looked_at_ = 0;
+  for (; looked_at_ < early_.size(); ++looked_at_) {
+    if (!same_place(early_[looked_at_])) continue;
+    const dds::FleetPlace visit = early_[looked_at_];
+    early_.erase(early_.begin() + static_cast<std::ptrdiff_t>(looked_at_));
+    return visit;
+  }
+  return std::nullopt;
+}
+
+bool Others::may_be_heard(std::int64_t session) const {
+  if (std::ranges::binary_search(in_map_, session)) return false;
+  const auto found = sessions_.find(session);
+  return found == sessions_.end() || !found->second.refused;
 }
 
 std::optional<std::uint32_t> Others::statistics(const dds::FleetPlace& place) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -51,6 +52,14 @@ class Others {
   /// @param place that says it is a visit. @return nothing where one of the two was not taken in
   [[nodiscard]] std::optional<SamePlace> same_place(const dds::FleetPlace& place) const;
 
+  /// Keeps a visit that `same_place` says nothing of yet: who tells it had heard the other place,
+  /// which may still be on its way here. The newest 1,024 are kept, of sessions that may be heard.
+  void wait_for_places(const dds::FleetPlace& visit);
+
+  /// @return a visit that was kept and whose places have both come meanwhile, the oldest first; it
+  ///   is not kept any more
+  [[nodiscard]] std::optional<dds::FleetPlace> next_visit();
+
   /// @param place that says by what its session is standardised
   /// @return the session's index; nothing where no place of it was taken in, or it says nonsense:
   ///   then no more is taken in
@@ -75,6 +84,7 @@ class Others {
     std::int64_t newest_ns = 0;
   };
 
+  [[nodiscard]] bool may_be_heard(std::int64_t session) const;
   [[nodiscard]] Session* known(const dds::FleetPlace& place, const dds::FleetSession* about);
   [[nodiscard]] std::optional<std::string> fault(const Session& session,
                                                  const dds::FleetPlace& place) const;
@@ -86,6 +96,9 @@ class Others {
   std::map<std::int64_t, Session> sessions_;
   std::vector<Names> names_;  // never moves: room for all is there
   std::uint64_t taken_ = 0;
+  std::deque<dds::FleetPlace> early_;  // visits
+  std::size_t looked_at_ = 0;          // of these
+  std::uint64_t taken_then_ = 0;       // when that began
   bool full_ = false;
   bool crowded_ = false;
   std::vector<std::string> news_;
