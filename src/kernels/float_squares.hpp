@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "kernels/blocks.hpp"
 #include "seqloop/difference.hpp"
 
 // Highway's headers turn this into the instructions that the file which includes it is compiled
@@ -147,7 +148,7 @@ void squares_block(const float* queries, std::size_t queries_count, const float*
     const std::size_t after = first + length < stride ? first + length : 0;
     // Some rows stay in the nearest cache while the queries pass by: copied, because vectors that
     // are a whole number of pages long share few places there.
-    float near[rows_together * float_block];
+    alignas(stored_line) float near[rows_together * float_block];
     for (std::size_t r = 0; r < whole_rows; r += rows_together) {
       for (std::size_t k = 0; k < rows_together; ++k) {
         std::memcpy(near + k * length, rows + (r + k) * stride + first, length * sizeof(float));

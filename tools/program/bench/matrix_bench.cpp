@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "program/process/available_memory.hpp"
+#include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/descriptor_rows.hpp"
 #include "seqloop/detail/float_columns.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
@@ -27,16 +28,17 @@ MatcherConfig matrix_config(std::size_t ds, Arithmetic arithmetic) {
   return config;
 }
 
-/// A synthetic drive, kept.
+/// A synthetic drive, kept where a map would keep it: its vectors begin on cache lines.
 class Drive {
  public:
   Drive(const Capacity& size, float noise)
       : size_(size.descriptor_size),
         stride_(padded_size(size_)),
-        values_(size.places * stride_, 0.0F) {
+        memory_(std::uint64_t{size.places} * stride_ * sizeof(float) + Arena::alignment, {}),
+        values_(Arena(memory_.span()).take<float>("drive", size.places * stride_)) {
     SyntheticPlaces street(size_);
     for (std::size_t i = 0; i < size.places; ++i) {
-      street.see(static_cast<double>(i), noise, std::span(values_).subspan(i * stride_, size_));
+      street.see(static_cast<double>(i), noise, values_.subspan(i * stride_, size_));
     }
   }
   [[nodiscard]] std::span<const float> values() const { return values_; }
@@ -48,7 +50,8 @@ class Drive {
  private:
   std::size_t size_;
   std::size_t stride_;
-  std::vector<float> values_;
+  ArenaMemory memory_;
+  std::span<float> values_;
 };
 
 PlaceMap map_of(const Drive& drive, const MatcherConfig& config, const Capacity& size) {
