@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <cstring>
 
 namespace seqloop {
 namespace {
@@ -21,12 +21,25 @@ std::uint64_t random_number(std::uint64_t n) noexcept {
   return z ^ (z >> 31U);
 }
 
-/// Writes a value of one, then one of the other, and so on. @param out [2 count]
-void alternate(const std::int8_t* one, const std::int8_t* other, std::size_t count,
-               std::int8_t* __restrict out) noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    out[2 * i] = one[i];
-    out[2 * i + 1] = other[i];
+// Values of one descriptor, in a register where the processor has such.
+using Values [[gnu::vector_size(sketched_together)]] = std::int8_t;
+
+/// As many values of each descriptor as there are descriptors.
+struct Tile {
+  Values rows[sketched_together];
+};
+
+/// Writes a value of a row in the first half, then one of the row as far on in the second, and so
+/// on. Four times, and rows have become columns.
+void alternate(const Tile& from, Tile& to) noexcept {
+  constexpr std::size_t half = sketched_together / 2;
+  for (std::size_t i = 0; i < half; ++i) {
+    const Values one = from.rows[i];
+    const Values other = from.rows[i + half];
+    to.rows[2 * i] =
+        __builtin_shufflevector(one, other, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+    to.rows[2 * i + 1] = __builtin_shufflevector(one, other, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28,
+                                                 13, 29, 14, 30, 15, 31);
   }
 }
 
@@ -83,23 +96,33 @@ void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> ch
 
 void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
                   std::size_t descriptor_size, std::span<std::int8_t> out) noexcept {
-  // Pairs become fours, fours eights: from the second half of the room into the first and back.
-  const std::size_t half = sketched_together * descriptor_size;
-  std::int8_t* to = out.data() + half;
-  std::int8_t* from = out.data();
-  for (std::size_t i = 0; i < sketched_together / 2; ++i) {
-    alternate(descriptors[i], descriptors[i + sketched_together / 2], descriptor_size,
-              to + i * 2 * descriptor_size);
-  }
-  for (std::size_t rows = sketched_together / 2; rows > 1; rows /= 2) {
-    std::swap(from, to);
-    const std::size_t length = half / rows;
-    for (std::size_t i = 0; i < rows / 2; ++i) {
-      alternate(from + i * length, from + (i + rows / 2) * length, length, to + i * 2 * length);
+  std::int8_t* plain = out.data();
+  std::int8_t* negative = plain + sketched_together * descriptor_size;
+  const auto put = [&](const Values& values) {
+    const Values negated = -values;
+    std::memcpy(plain, &values, sketched_together);
+    std::memcpy(negative, &negated, sketched_together);
+    plain += sketched_together;
+    negative += sketched_together;
+  };
+  std::size_t value = 0;
+  for (; value + sketched_together <= descriptor_size; value += sketched_together) {
+    Tile tile;
+    for (std::size_t i = 0; i < sketched_together; ++i) {
+      std::memcpy(&tile.rows[i], descriptors[i] + value, sketched_together);
     }
+    Tile other;
+    alternate(tile, other);
+    alternate(other, tile);
+    alternate(tile, other);
+    alternate(other, tile);
+    for (const Values& values : tile.rows) put(values);
   }
-  std::transform(to, to + half, from,
-                 [](std::int8_t value) { return static_cast<std::int8_t>(-value); });
+  for (; value < descriptor_size; ++value) {
+    Values values;
+    for (std::size_t i = 0; i < sketched_together; ++i) values[i] = descriptors[i][value];
+    put(values);
+  }
 }
 
 void sketch_together(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,

@@ -116,7 +116,9 @@ void MapFile::State::each_row(std::int64_t from, std::int64_t to, const TakeRow&
   Statement rows(database, std::string(block_columns) +
                                "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
   rows.with(from, to);
-  while (rows.step() && take(block_row(rows))) {
+  while (rows.step()) {
+    const BlockRow row = block_row(rows);
+    if (!take({row, row.whole(form)})) return;
   }
 }
 
@@ -159,9 +161,10 @@ void MapFile::State::read(std::int64_t from, std::int64_t to, const GiveRows& ro
   Kept kept(static_cast<std::size_t>(form.place_bytes));
   std::vector<BlockRow> wrong;  // told of at the end: until then another thread may be reading
   std::optional<std::int64_t> newest;
-  const auto take_row = [&](const BlockRow& row) {
+  const auto take_row = [&](const ReadRow& read) {
+    const BlockRow& row = read.row;
     newest = row.first;
-    if (!row.whole(form)) {
+    if (!read.whole) {
       wrong.push_back(row);
       return static_cast<bool>(told);
     }

@@ -22,7 +22,7 @@ std::span<const std::byte> copied(std::span<const std::byte> from, std::vector<s
 RowsAhead::RowsAhead(const GiveRows& read)
     : spare_(std::deque<Batch>(batches - 1)), thread_([this, read] {
         try {
-          read([this](const BlockRow& row) { return keep(row); });
+          read([this](const ReadRow& row) { return keep(row); });
         } catch (...) {
           failed_ = std::current_exception();
         }
@@ -42,15 +42,16 @@ RowsAhead::~RowsAhead() {
 }
 
 /// Copies a row to where the others are; what is there does not move.
-bool RowsAhead::keep(const BlockRow& row) {
+bool RowsAhead::keep(const ReadRow& read) {
+  const BlockRow& row = read.row;
   const std::size_t more = row.records.size() + row.places.size();
   if (filling_.bytes.capacity() - filling_.bytes.size() < more) {
     if (!filling_.rows.empty() && !hand_over()) return false;
     filling_.bytes.reserve(std::max(more, batch_bytes));
   }
-  BlockRow kept = row;
-  kept.records = copied(row.records, filling_.bytes);
-  kept.places = copied(row.places, filling_.bytes);
+  ReadRow kept = read;
+  kept.row.records = copied(row.records, filling_.bytes);
+  kept.row.places = copied(row.places, filling_.bytes);
   filling_.rows.push_back(kept);
   return true;
 }
@@ -79,7 +80,7 @@ void RowsAhead::give(const TakeRow& take) {
       batch = std::move(read_.front());
       read_.pop();
     }
-    for (const BlockRow& row : batch.rows) {
+    for (const ReadRow& row : batch.rows) {
       if (!take(row)) return;
     }
     const std::scoped_lock lock(mutex_);

@@ -14,14 +14,20 @@
 
 namespace seqloop::sqlite {
 
+/// A row as it was read.
+struct ReadRow {
+  BlockRow row;
+  bool whole = false;  ///< whether it is what was saved, and fits the map
+};
+
 /// Told of a row, which is valid during the call. @return whether it wants more
-using TakeRow = std::function<bool(const BlockRow&)>;
+using TakeRow = std::function<bool(const ReadRow&)>;
 /// Tells of rows until there are no more, or none are wanted.
 using GiveRows = std::function<void(const TakeRow&)>;
 
 /// Reads rows in a thread of its own, a few megabytes ahead of who takes them: while the disk is
-/// waited for, what was read before is dealt with. Allocates: three megabytes, or as many of the
-/// largest rows.
+/// waited for and checksums are computed, what was read before is dealt with. Allocates: three
+/// megabytes, or as many of the largest rows.
 class RowsAhead {
  public:
   /// Begins to read. @param read called in the thread; may throw
@@ -38,11 +44,11 @@ class RowsAhead {
  private:
   /// Copies of rows, one behind the other.
   struct Batch {
-    std::vector<BlockRow> rows;
+    std::vector<ReadRow> rows;
     std::vector<std::byte> bytes;
   };
 
-  bool keep(const BlockRow& row);
+  bool keep(const ReadRow& read);
   bool hand_over();
 
   std::mutex mutex_;
