@@ -216,12 +216,10 @@ bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noe
   switch (form_.arithmetic) {
     case Arithmetic::float32: {
       const std::span<float> values = exact_.subspan(row * stride_, form_.size);
-      bool finite = true;
       for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
-        finite = finite && std::isfinite(values[i]);
       }
-      return finite;
+      return all_finite(values);
     }
     case Arithmetic::int8: {
       const std::span<std::int8_t> bytes = small(row);

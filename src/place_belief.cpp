@@ -184,6 +184,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const DescriptorRows& queries = view.queries->rows();
   // Share of bits in which a query and a row differ.
   const auto share = [&](std::size_t query, std::size_t row) {
+    ++sketches_;
     return view.map->rows().look_closely(queries, query, order.slot(row)) /
            DescriptorRows::close_bits;
   };
@@ -197,7 +198,6 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     Hypothesis& at = next_[i];
     take_on(at, moved_[i]);
     const double here = share(newest, at.row);
-    ++sketches_;
     double contrast = 0.0;
     if (has_before) {
       const CandidateRun session = order.around(at.row);
@@ -211,7 +211,6 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
         around += share(newest, at.row + apart);
         weight += 1.0;
       }
-      sketches_ += static_cast<std::size_t>(weight) - 1;
       contrast = (around / weight - here) / scene.deviation;
     }
     const double z = (scene.mean - here) / scene.deviation;

@@ -216,7 +216,6 @@ TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
   EXPECT_LE(widest, 9U);
 }
 
-// Places that are no candidates yet do not go.
 TEST(FullMap, WhatIsNeededElsewhereStaysHoweverManyFramesComeAtOnce) {
   constexpr std::size_t capacity = 120;
   constexpr std::size_t at_once = 20;
@@ -255,6 +254,7 @@ TEST(FullMap, WhatIsNeededElsewhereStaysHoweverManyFramesComeAtOnce) {
   EXPECT_EQ(first_place(), oldest_needed + at_once) << "now they may go";
 }
 
+// Places that are no candidates yet do not go.
 TEST(FullMap, AMapWithoutRoomForCandidatesIsRefused) {
   for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
     MatcherConfig config = paper(Candidates::adaptive, 5, Use::close_loops);
