@@ -41,6 +41,7 @@ TEST_F(StreetDrive, ClosesItsLoopsAsAVideoAndShowsThem) {
   make("--frames 500 --drives loop --format avi --seed 2");
   const auto outcome = run("run --source drive/drive.avi --out r.jsonl --pictures pics");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("damaged"), std::string::npos) << outcome.err;
   std::istringstream text(test::read_all(file("r.jsonl")));
   std::size_t frames = 0;
   std::size_t matches = 0;

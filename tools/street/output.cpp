@@ -59,8 +59,9 @@ class AviFile : public FrameSink {
  public:
   AviFile(fs::path file, cv::Size size)
       : file_(std::move(file)),
-        writer_(file_.string(), cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'),
-                10.0, size) {
+        // OpenCV's own writer leaves the last bits of some pictures out.
+        writer_(file_.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0,
+                size) {
     if (!writer_.isOpened()) fail(file_, "cannot be opened for writing");
   }
 
@@ -72,7 +73,7 @@ class AviFile : public FrameSink {
   void close() override {
     writer_.release();
     // The writer reports no errors; a full disk shows as frames that cannot be read back.
-    cv::VideoCapture back(file_.string(), cv::CAP_OPENCV_MJPEG);
+    cv::VideoCapture back(file_.string(), cv::CAP_FFMPEG);
     std::size_t found = 0;
     while (back.isOpened() && back.grab()) ++found;
     if (found != count_) {
