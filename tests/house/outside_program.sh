@@ -39,8 +39,8 @@ cmake -G Ninja -S "$work/core" -B "$work/core/build" "$@" -DCMAKE_PREFIX_PATH="$
 cmake --build "$work/core/build" >"$work/log" || { cat "$work/log"; exit 1; }
 $emulator "$work/core/build/loops"
 
-"$maker" --out "$work/drive" --frames 1200 --drives loop --size 160x90 2>/dev/null
+"$maker" --out "$work/drive" --frames 500 --seed 2 --drives loop --size 160x90 2>/dev/null
 $emulator "$work/user/build/loops" "$work/drive/drive" >"$work/loops.txt"
 tail -3 "$work/loops.txt"
-[ "$(grep -c 'is place' "$work/loops.txt")" -ge 20 ] || { echo "hardly any loop found"; exit 1; }
+[ "$(grep -c 'is place' "$work/loops.txt")" -ge 100 ] || { echo "hardly any loop found"; exit 1; }
 $emulator "$work/installed/bin/seqloop" --version

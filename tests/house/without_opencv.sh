@@ -8,7 +8,8 @@
 # SEQLOOP_REQUIRE_DATA set, that fails.
 set -euo pipefail
 source=$1 cxx=$2
-work=$(mktemp -d)
+# Here, inside the checkout, so that the compiler cache knows these sources again, in any clone.
+work=$(mktemp -d "$PWD/without_opencv.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 must() { "$@" >"$work/log" 2>&1 || { echo "failed: $*"; cat "$work/log"; exit 1; }; }
 

@@ -51,11 +51,12 @@ match_all() {
   shift
   while read -r job; do
     # shellcheck disable=SC2086 # options
-    "$@" match $job --out list.csv 2>errors </dev/null || { cat errors; exit 1; }
-    cat list.csv >>"$name.csv"
+    "$@" match $job --out "$name.list" 2>"$name.errors" </dev/null || { cat "$name.errors"; exit 1; }
+    cat "$name.list" >>"$name.csv"
   done <options
   echo "$(sha256sum <"$name.csv") $name: $(wc -l <"$name.csv") lines"
 }
+# Several may run side by side.
 same() {
   match_all "$@"
   cmp native.csv "$1.csv" || { echo "was all of this built from the same sources?"; exit 1; }
@@ -64,11 +65,14 @@ same() {
 match_all native "$seqloop"
 [ "$(wc -l <native.csv)" -gt 500 ]
 if [ "$what" = boards ]; then
+  matching=()
   for board in "${boards[@]}"; do
     read -r arch processor <<<"$board"
     same "$arch-$processor" "$(emulator_of "$arch")" -cpu "$processor" \
-      -L "$other/sysroot/$arch" "$(program_of "$arch")"
+      -L "$other/sysroot/$arch" "$(program_of "$arch")" &
+    matching+=($!)
   done
+  for board in "${matching[@]}"; do wait "$board"; done
   exit
 fi
 kernels=$("$seqloop" bench --only column --n 16 --d 64 --rounds 1 --json 2>/dev/null |
