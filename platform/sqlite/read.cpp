@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "sqlite/little_endian.hpp"
+#include "sqlite/pages_ahead.hpp"
 #include "sqlite/state.hpp"
 
 namespace seqloop::sqlite {
@@ -199,7 +200,10 @@ void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
     take(block);
   };
   const GiveRows rows = [this](const TakeRow& take_row) {
-    RowsAhead ahead([this](const TakeRow& keep) { state_->each_row(0, any, keep); });
+    RowsAhead ahead([this](const TakeRow& keep) {
+      const PagesAhead pages(state_->database, state_->path);
+      state_->each_row(0, any, keep);
+    });
     ahead.give(take_row);
   };
   state_->read(0, any, rows, counted, damaged);

@@ -7,8 +7,6 @@
 namespace seqloop::sqlite {
 namespace {
 
-std::int64_t signed_of(std::uint64_t value) { return static_cast<std::int64_t>(value); }
-
 /// The numbers of a session's places lie between these, and no other's do.
 struct Numbers {
   std::int64_t first = 0;

@@ -6,8 +6,6 @@
 namespace seqloop::sqlite {
 namespace {
 
-std::int64_t signed_of(std::uint64_t value) { return static_cast<std::int64_t>(value); }
-
 /// Throws std::invalid_argument: what of a batch does not fit.
 void check_batch(const MapBatch& batch, const MapForm& form) {
   if (batch.places.size() / form.place_bytes != batch.records.size() ||

@@ -49,6 +49,11 @@ constexpr std::size_t most_block_bytes = std::size_t{4} << 20U;
 constexpr std::uint64_t most_place_bytes = std::uint64_t{1} << 26U;
 constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
 
+/// Numbers in columns are signed.
+[[nodiscard]] constexpr std::int64_t signed_of(std::uint64_t value) noexcept {
+  return static_cast<std::int64_t>(value);
+}
+
 /// Places that one block takes.
 [[nodiscard]] constexpr std::size_t block_places(const MapForm& form) noexcept {
   const std::size_t fit = most_block_bytes / static_cast<std::size_t>(form.place_bytes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/sqlite/map_file.hpp"
 
+#include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,12 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <map>
 #include <random>
 #include <set>
 
 #include "expect_setup_error.hpp"
 #include "sqlite/checksum.hpp"
+#include "sqlite/pages_ahead.hpp"
 #include "sqlite/recording_vfs.hpp"
 #include "sqlite/sample_map.hpp"
 #include "temporary_folder.hpp"
@@ -26,6 +29,8 @@ using sqlite::MapFile;
 using test::says;
 using test::setup_error;
 using What = test::FileEvent::What;
+
+constexpr std::size_t wide = std::size_t{1} << 16U;  // bytes of a large place
 
 class Map : public testing::Test {
  protected:
@@ -109,6 +114,84 @@ TEST_F(Map, IsReadAsItWasSaved) {
   }
   EXPECT_EQ(content(), saved);
   EXPECT_EQ(content(open()), saved);
+}
+
+/// Two sessions that grow by turns, so that their rows are not in the order of the file's pages;
+/// 26 MB: enough to be read ahead.
+void make_large(MapFile& map) {
+  constexpr std::size_t batch = 7;
+  std::array<std::int64_t, 2> sessions{map.begin_session("monday", 1, ""),
+                                       map.begin_session("tuesday", 2, "")};
+  for (std::uint64_t first = 0; first < 28 * batch; first += batch) {
+    for (const std::int64_t session : sessions) {
+      std::vector<sqlite::PlaceRecord> records;
+      std::vector<std::byte> places;
+      for (std::uint64_t i = first; i < first + batch; ++i) {
+        records.push_back({(static_cast<std::uint64_t>(session) << 32U) + i, i, 0});
+        const std::vector<std::byte> place = test::sample_place(records.back().number, wide);
+        places.insert(places.end(), place.begin(), place.end());
+      }
+      map.save(session, {.frames = first + batch, .records = records, .places = places});
+    }
+  }
+}
+
+/// @return how many places are as they were saved
+std::size_t right_places(const MapFile& map, std::vector<std::string>& damaged) {
+  std::size_t right = 0;
+  map.read(
+      [&right](const sqlite::PlaceBlock& block) {
+        for (std::size_t i = 0; i < block.records.size(); ++i) {
+          const auto place = block.places.subspan(i * wide, wide);
+          if (std::ranges::equal(place, test::sample_place(block.records[i].number, wide))) ++right;
+        }
+      },
+      [&damaged](const std::string& what) { damaged.push_back(what); });
+  return right;
+}
+
+/// Has the system forget what it keeps of a file. No connection of this process may be open.
+void drop(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  EXPECT_EQ(::fdatasync(descriptor), 0);
+  EXPECT_EQ(::posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED), 0);
+  ::close(descriptor);
+}
+
+TEST_F(Map, ThatIsLargeIsReadAheadAndTheSame) {
+  constexpr std::size_t all = 2 * 28 * 7;
+  const sqlite::MapForm form{"wide", "test", wide, wide};
+  std::vector<std::string> damaged;
+  {
+    MapFile map = MapFile::open(file(), form);
+    make_large(map);
+    EXPECT_EQ(right_places(map, damaged), all);
+    EXPECT_EQ(right_places(MapFile::read_only(file()), damaged), all) << "a part is in the log";
+  }
+  for (const bool cached : {true, false}) {
+    if (!cached) drop(file());
+    EXPECT_EQ(right_places(MapFile::read_only(file()), damaged), all) << cached;
+    if (!cached) drop(file());
+    const sqlite::Database database(file(), SQLITE_OPEN_READONLY);
+    const sqlite::PagesAhead pages(database, file());
+    sqlite::Statement row(database, "SELECT places FROM block ORDER BY first");
+    while (row.step()) EXPECT_EQ(row.blob(0).size() % wide, 0U);
+    // Not every file system can be read past the cache.
+    if (sqlite::UncachedFile(file()).bytes() != 0) {
+      EXPECT_GT(pages.given(), fs::file_size(file()) / 2) << cached;
+    }
+  }
+  EXPECT_TRUE(damaged.empty());
+  {
+    std::fstream bytes(file(), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(file()) / 2 + 100));
+    bytes.write("damaged", 7);
+  }
+  EXPECT_EQ(right_places(MapFile::read_only(file()), damaged), all - 7);
+  ASSERT_EQ(damaged.size(), 1U);
+  EXPECT_TRUE(damaged.front().starts_with("the block from place ")) << damaged.front();
+  fs::resize_file(file(), fs::file_size(file()) / 2);
+  EXPECT_THROW(right_places(MapFile::read_only(file()), damaged), SetupError);
 }
 
 TEST_F(Map, ThatIsClosedIsOneFileWhoseKindIsSeen) {
