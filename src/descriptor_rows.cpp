@@ -292,12 +292,13 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
-                             std::span<const std::span<float>> out) const noexcept {
+                             std::span<const std::span<float>> out,
+                             std::span<float> room) const noexcept {
   std::array<double, MatcherConfig::most_frames_at_once * block_abreast> squares;
   in_blocks(queries.exact_.size() / stride_, query, out, [&](const auto& block) {
     float_column_->squares_block(queries.exact(block.query).data(), block.columns.size(),
                                  exact(block.row).data(), stride_, block.count, squares.data(),
-                                 block_abreast);
+                                 block_abreast, room.data());
     for (std::size_t q = 0; q < block.columns.size(); ++q) {
       std::ranges::transform(std::span(squares).subspan(q * block_abreast, block.count),
                              block.columns[q].subspan(block.row).begin(), root);
@@ -319,6 +320,8 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
     }
   });
 }
+
+std::size_t DescriptorRows::compare_room() noexcept { return FloatColumn::block_room; }
 
 double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
   if (form_.arithmetic == Arithmetic::float32) {

@@ -2,7 +2,7 @@
 #include <immintrin.h>
 
 #include "kernels/composed_of.hpp"
-#include "kernels/float_squares.hpp"
+#include "kernels/float_tiles.hpp"
 #include "kernels/four_sums.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/sketches.hpp"

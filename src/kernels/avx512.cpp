@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
-#include "kernels/float_squares.hpp"
+#include "kernels/float_blocks.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/sketches.hpp"
 #include "kernels/variants.hpp"

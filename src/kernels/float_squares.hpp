@@ -4,9 +4,7 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
-#include <cstring>
 
-#include "kernels/blocks.hpp"
 #include "seqloop/difference.hpp"
 
 // Highway's headers turn this into the instructions that the file which includes it is compiled
@@ -130,54 +128,6 @@ void squares(const float* query, const float* rows, std::size_t stride, std::siz
     double same[rows_together];
     squares_abreast<rows_together>(query, rows + row * stride, 0, stride, same);
     sums[row] = same[0];
-  }
-}
-
-void squares_block(const float* queries, std::size_t queries_count, const float* rows,
-                   std::size_t stride, std::size_t count, double* sums,
-                   std::size_t out_stride) noexcept {
-  // As many sums as there are registers, besides the rows, a query and what they differ by.
-  constexpr std::size_t abreast = squares_width == lanes / 2 ? 2 : 4;
-  const std::size_t whole_queries = queries_count / abreast * abreast;
-  const std::size_t whole_rows = count / rows_together * rows_together;
-  for (std::size_t q = 0; q < whole_queries; ++q) {
-    for (std::size_t r = 0; r < whole_rows; ++r) sums[q * out_stride + r] = 0.0;
-  }
-  for (std::size_t first = 0; first < stride; first += float_block) {
-    const std::size_t length = stride - first < float_block ? stride - first : float_block;
-    const std::size_t after = first + length < stride ? first + length : 0;
-    // Some rows stay in the nearest cache while the queries pass by: copied, because vectors that
-    // are a whole number of pages long share few places there.
-    alignas(stored_line) float near[rows_together * float_block];
-    for (std::size_t r = 0; r < whole_rows; r += rows_together) {
-      for (std::size_t k = 0; k < rows_together; ++k) {
-        std::memcpy(near + k * length, rows + (r + k) * stride + first, length * sizeof(float));
-      }
-      // What comes next is fetched in quarters: the next rows while queries pass by, the queries'
-      // next values while rows do.
-      const float* next = r + rows_together < whole_rows
-                              ? rows + (r + rows_together) * stride + first
-                              : rows + after;
-      const std::size_t rows_done = r / rows_together;
-      for (std::size_t q = 0; q < whole_queries; q += abreast) {
-        const std::size_t queries_done = q / abreast;
-        const float* next_row =
-            next + queries_done / 4 % rows_together * stride + queries_done % 4 * (length / 4);
-        const float* next_query = queries + (q + rows_done % abreast) * stride + after +
-                                  rows_done / abreast % 4 * (length / 4);
-        add_squares<abreast, rows_together>({queries + q * stride + first, stride, near, length,
-                                             sums + q * out_stride + r, out_stride},
-                                            length, [=](std::size_t i) {
-                                              __builtin_prefetch(next_row + i / 4, 0, 2);
-                                              __builtin_prefetch(next_query + i / 4, 0, 2);
-                                            });
-      }
-    }
-  }
-  for (std::size_t q = 0; q < queries_count; ++q) {
-    const std::size_t done = q < whole_queries ? whole_rows : 0;
-    squares(queries + q * stride, rows + done * stride, stride, count - done,
-            sums + q * out_stride + done);
   }
 }
 

@@ -71,7 +71,7 @@ inline void lane_squares(const float* query, const float* rows, std::size_t stri
 
 inline void lane_squares_block(const float* queries, std::size_t queries_count, const float* rows,
                                std::size_t stride, std::size_t count, double* sums,
-                               std::size_t out_stride) noexcept {
+                               std::size_t out_stride, float* /*room*/) noexcept {
   for (std::size_t query = 0; query < queries_count; ++query) {
     lane_squares(queries + query * stride, rows, stride, count, sums + query * out_stride);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
 #ifdef __aarch64__
-#include "kernels/float_squares.hpp"
+#include "kernels/float_blocks.hpp"
 #endif
 #include "kernels/highway.hpp"
 #include "kernels/neon_bytes.hpp"

@@ -111,32 +111,39 @@ TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
 TEST(FloatColumns, OfSeveralAreThoseOfEach) {
   std::mt19937 random(15);
   std::normal_distribution<float> normal;
-  for (const FloatColumn* column : float_columns()) {
-    if (!column->supported()) continue;
-    for (const std::size_t size : {0U, 16U, 736U, 1024U, 2064U}) {
-      for (const std::size_t queries : {0U, 1U, 2U, 4U, 7U}) {
-        for (const std::size_t count : {0U, 1U, 4U, 11U}) {
-          std::vector<float> query(queries * size);
-          std::vector<float> rows(count * size);
-          for (float& value : query) value = normal(random);
-          for (float& value : rows) value = normal(random);
-          const std::size_t stride = count + 2;
-          std::vector<double> sums(queries * stride, -1.0);
-          column->squares_block(query.data(), queries, rows.data(), size, count, sums.data(),
-                                stride);
-          for (std::size_t q = 0; q < queries; ++q) {
-            for (std::size_t row = 0; row < count; ++row) {
-              EXPECT_EQ(sums[q * stride + row],
-                        squared_distance(std::span(query).subspan(q * size, size),
-                                         std::span(rows).subspan(row * size, size)))
-                  << column->name << ' ' << size << ' ' << q << ' ' << row;
-            }
-            EXPECT_EQ(sums[q * stride + count], -1.0) << "nothing behind the last";
-          }
+  std::vector<float> room(FloatColumn::block_room);
+  // With squares below the smallest normal number, and sums beyond the largest.
+  const auto compare = [&](std::size_t size, std::size_t queries, std::size_t count, float scale) {
+    std::vector<float> query(queries * size);
+    std::vector<float> rows(count * size);
+    for (float& value : query) value = scale * normal(random);
+    for (float& value : rows) value = scale * normal(random);
+    const std::size_t stride = count + 2;
+    for (const FloatColumn* column : float_columns()) {
+      if (!column->supported()) continue;
+      std::vector<double> sums(queries * stride, -1.0);
+      column->squares_block(query.data(), queries, rows.data(), size, count, sums.data(), stride,
+                            room.data());
+      for (std::size_t q = 0; q < queries; ++q) {
+        for (std::size_t row = 0; row < count; ++row) {
+          ASSERT_EQ(sums[q * stride + row],
+                    squared_distance(std::span(query).subspan(q * size, size),
+                                     std::span(rows).subspan(row * size, size)))
+              << column->name << ' ' << size << ' ' << q << ' ' << row << ' ' << scale;
         }
+        EXPECT_EQ(sums[q * stride + count], -1.0) << "nothing behind the last";
       }
     }
+  };
+  for (const std::size_t size : {0U, 16U, 736U, 1024U, 2064U}) {
+    for (const std::size_t queries : {0U, 1U, 2U, 4U, 7U, 11U}) {
+      for (const std::size_t count : {0U, 1U, 4U, 11U, 16U, 33U}) {
+        compare(size, queries, count, 1.0F);
+      }
+    }
+    for (const float scale : {1e-19F, 3e-23F, 1e19F, 1e37F}) compare(size, 11, 33, scale);
   }
+  compare(1040, FloatColumn::block_queries, 96, 1.0F);
 }
 
 TEST(MeanAbsolute, EqualsTheDefinitionWithoutThePadding) {

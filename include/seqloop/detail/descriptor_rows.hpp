@@ -92,10 +92,14 @@ class DescriptorRows {
   /// Euclid, and `int8`.
   /// @param query rows of the queries from this one on; behind their last follows their first
   /// @param out   one column a query, at most `MatcherConfig::most_frames_at_once`
+  /// @param room  [compare_room()]
   void compare(const DescriptorRows& queries, std::size_t query,
-               std::span<const std::span<float>> out) const noexcept;
+               std::span<const std::span<float>> out, std::span<float> room) const noexcept;
   void compare(const DescriptorRows& queries, std::size_t query,
                std::span<const std::span<std::uint16_t>> out) const noexcept;
+
+  /// Values that comparing several descriptors of floats needs room for.
+  [[nodiscard]] static std::size_t compare_room() noexcept;
 
   /// The difference of two, 0 .. 2 between unit vectors.
   [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;

@@ -81,11 +81,13 @@ void compare_all(const Drive& query, const Drive& reference) {
   const FloatColumn& kernels = best_float_column();
   const std::size_t stride = query.values().size() / query.frames();
   std::vector<double> sums(frames_at_once * abreast);
+  std::vector<float> room(FloatColumn::block_room);
   for (std::size_t first = 0; first < query.frames(); first += frames_at_once) {
     const std::size_t count = std::min(frames_at_once, query.frames() - first);
     for (std::size_t row = 0; row < reference.frames(); row += abreast) {
       kernels.squares_block(query.frame(first).data(), count, reference.frame(row).data(), stride,
-                            std::min(abreast, reference.frames() - row), sums.data(), abreast);
+                            std::min(abreast, reference.frames() - row), sums.data(), abreast,
+                            room.data());
     }
   }
 }
