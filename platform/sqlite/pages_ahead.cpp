@@ -122,7 +122,7 @@ bool PagesAhead::take(std::uint64_t at, std::span<std::byte> to) noexcept {
   if (!move_to(number)) return false;
   Piece& wanted = piece(number);
   changed_.wait(lock, [&] { return wanted.number == number; });
-  const std::size_t begin = at % piece_bytes;
+  const auto begin = static_cast<std::size_t>(at % piece_bytes);
   if (begin + to.size() > wanted.bytes) return false;
   std::memcpy(to.data(), wanted.room.data() + begin, to.size());
   given_ += to.size();

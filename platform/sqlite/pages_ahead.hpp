@@ -83,7 +83,9 @@ class PagesAhead {
   static int read(sqlite3_file* file, void* to, int bytes, sqlite3_int64 at) noexcept;
   [[nodiscard]] bool take(std::uint64_t at, std::span<std::byte> to) noexcept;
   [[nodiscard]] bool move_to(std::uint64_t number) noexcept;
-  [[nodiscard]] Piece& piece(std::uint64_t number) noexcept { return held_[number % pieces]; }
+  [[nodiscard]] Piece& piece(std::uint64_t number) noexcept {
+    return held_[static_cast<std::size_t>(number % pieces)];
+  }
   void fill() noexcept;
 
   UncachedFile from_;
