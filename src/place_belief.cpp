@@ -23,6 +23,11 @@ constexpr std::size_t apart = 8;
 constexpr double leaving = 0.01;
 constexpr double coming = 0.001;
 
+// A robot that is switched on, and has a map of earlier drives, is likelier on it than one that has
+// just left it.
+constexpr double coming_at_first = 0.02;
+constexpr std::size_t first_frames = 20;
+
 constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
 constexpr std::size_t born_most = 16;
@@ -62,7 +67,8 @@ bool used(const MatcherConfig& config) { return config.decision == Decision::pro
 }  // namespace
 
 PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
-    : rows_(arena.take<Hypothesis>("hypotheses", used(config) ? most : 0)),
+    : localises_(config.use == Use::localise),
+      rows_(arena.take<Hypothesis>("hypotheses", used(config) ? most : 0)),
       next_(arena.take<Hypothesis>("hypotheses of the next frame", used(config) ? most : 0)),
       moved_(arena.take<Moved>("hypotheses that have moved", used(config) ? 3 * most : 0)),
       gauge_(arena, used(config)),
@@ -81,7 +87,9 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   move(view.map->order(), novelty_ > least_novelty ? moving : standing);
   double on = 0.0;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
-  const double born = coming * std::min(1.0, 4.0 * novelty_) * new_place_;
+  const bool earlier_drives = localises_ || view.map->order().sessions() > 1;
+  const double comes = earlier_drives && weighed_++ < first_frames ? coming_at_first : coming;
+  const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double left = leaving * novelty_;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
@@ -368,6 +376,7 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
 
 void PlaceBelief::restart() noexcept {
   count_ = 0;
+  weighed_ = 0;
   new_place_ = 1.0;
   likeliest_.reset();
   traces_.restart();

@@ -114,7 +114,9 @@ class PlaceBelief {
   void judge(const SceneView& view, const Scene& scene) noexcept;
   void know_better(const PlaceMap& map, std::size_t index) noexcept;
 
+  bool localises_;
   std::size_t sketches_ = 0;
+  std::size_t weighed_ = 0;  // frames since nothing was known
   double new_place_ = 1.0;
   WrongRows wrong_;       // what the best wrong rows gain
   double novelty_ = 0.0;  // of the newest frame
