@@ -53,11 +53,8 @@ void squares_block(const float* queries, std::size_t queries_count, const float*
       }
     }
   }
-  for (std::size_t q = 0; q < queries_count; ++q) {
-    const std::size_t done = q < whole_queries ? whole_rows : 0;
-    squares(queries + q * stride, rows + done * stride, stride, count - done,
-            sums + q * out_stride + done);
-  }
+  squares_behind_tiles(queries, queries_count, whole_queries, rows, stride, count, whole_rows, sums,
+                       out_stride);
 }
 
 }  // namespace

@@ -131,5 +131,19 @@ void squares(const float* query, const float* rows, std::size_t stride, std::siz
   }
 }
 
+/// Of several queries by several rows what whole tiles leave: the rows behind them, and all rows of
+/// the queries behind them.
+/// @param whole_queries, whole_rows in tiles
+void squares_behind_tiles(const float* queries, std::size_t queries_count,
+                          std::size_t whole_queries, const float* rows, std::size_t stride,
+                          std::size_t count, std::size_t whole_rows, double* sums,
+                          std::size_t out_stride) noexcept {
+  for (std::size_t q = 0; q < queries_count; ++q) {
+    const std::size_t done = q < whole_queries ? whole_rows : 0;
+    squares(queries + q * stride, rows + done * stride, stride, count - done,
+            sums + q * out_stride + done);
+  }
+}
+
 }  // namespace
 }  // namespace seqloop::kernels
