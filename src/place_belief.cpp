@@ -87,8 +87,9 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   move(view.map->order(), novelty_ > least_novelty ? moving : standing);
   double on = 0.0;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
+  const bool begins = weighed_++ < first_frames;
   const bool earlier_drives = localises_ || view.map->order().sessions() > 1;
-  const double comes = earlier_drives && weighed_++ < first_frames ? coming_at_first : coming;
+  const double comes = begins && earlier_drives ? coming_at_first : coming;
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double left = leaving * novelty_;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;

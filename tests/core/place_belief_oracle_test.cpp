@@ -98,7 +98,8 @@ class NaiveBelief {
       on += at.mass;
       at.mass *= 1.0 - 0.01 * w;
     }
-    const double coming = earlier_drives_ && weighed_++ < 20 ? 0.02 : 0.001;
+    const bool begins = weighed_++ < 20;
+    const double coming = begins && earlier_drives_ ? 0.02 : 0.001;
     const double born = coming * std::min(1.0, 4.0 * w) * new_place;
     new_place += 0.01 * w * on - born;
     std::erase_if(moved, [&](const auto& at) { return at.first >= view.map->size(); });
