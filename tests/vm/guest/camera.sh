@@ -24,7 +24,7 @@ runs_at_full_rate() {
   for go in 1 2 3; do
     camera
     control timestamp_source=1
-    live --source /dev/video0 --format YUYV --size 640x480 --fps 25 --frames 75
+    live --source /dev/video0 --format YUYV --size 320x180 --fps 25 --frames 75
     expect "it ends" ends 0
     expect "75 lines" is 75 all_lines
     expect "every frame is good" is 75 good_lines
