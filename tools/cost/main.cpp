@@ -27,8 +27,6 @@ namespace {
 constexpr std::size_t pictures = 5;
 // More than once round a map of 100,000 places, scan by scan.
 constexpr std::size_t steps = 60;
-// Of the places of a map: making more would take most of the time.
-constexpr std::size_t most_synthetic_values = 3476 * 43'264;
 
 struct Cost {
   std::uint64_t mean = 0;
@@ -88,8 +86,7 @@ void count_pictures(const InstructionCounter& counter, std::string_view name,
 void count_matching(const InstructionCounter& counter, std::string_view name, std::size_t places,
                     std::size_t descriptor_size) {
   const MatcherConfig config;
-  const std::size_t synthetic = std::min(places, most_synthetic_values / descriptor_size);
-  program::DrivenDetector drive(config, {places, descriptor_size}, synthetic);
+  program::DrivenDetector drive(config, {places, descriptor_size});
   print("match", name, places,
         cost_of(
             counter, steps, [&] { drive.drive(); }, [&] { drive.step(); }));

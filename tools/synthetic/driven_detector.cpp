@@ -17,22 +17,18 @@ constexpr float noise = 1.0F;
 constexpr std::size_t most_learnt = 5000;
 
 PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
-                       const Capacity& capacity, std::size_t synthetic) {
+                       const Capacity& capacity) {
   PlaceMap map(config, capacity);
   std::vector<float> descriptor(capacity.descriptor_size);
   if (config.standardisation.on) {
-    for (std::size_t i = 0; i < std::min(synthetic, most_learnt); ++i) {
+    for (std::size_t i = 0; i < std::min(capacity.places, most_learnt); ++i) {
       places.see(static_cast<double>(i), 0.0F, descriptor);
       static_cast<void>(map.learn(descriptor));
     }
   }
   do {
     places.see(static_cast<double>(map.size()), 0.0F, descriptor);
-  } while (map.add(descriptor) && map.size() < synthetic);
-  const std::size_t half = synthetic / 2;
-  for (std::size_t from = half; map.take(map.rows(), from, map.size(), 0).slot;) {
-    from = from + 1 < synthetic ? from + 1 : half;
-  }
+  } while (map.add(descriptor) && map.size() < capacity.places);
   return map;
 }
 
@@ -42,14 +38,13 @@ std::uint64_t DrivenDetector::bytes_needed(const MatcherConfig& config, const Ca
   return PlaceMap::bytes_needed(config, capacity) + Detector::bytes_needed(config, capacity);
 }
 
-DrivenDetector::DrivenDetector(const MatcherConfig& config, const Capacity& capacity,
-                               std::size_t synthetic)
+DrivenDetector::DrivenDetector(const MatcherConfig& config, const Capacity& capacity)
     : stored_bytes_(config.arithmetic == Arithmetic::int8
                         ? padded_bytes(capacity.descriptor_size)
                         : padded_size(capacity.descriptor_size) * sizeof(float)),
       places_(capacity.descriptor_size),
-      robot_(synthetic < capacity.places ? synthetic / 2 : synthetic),
-      map_(synthetic_map(places_, config, capacity, synthetic)),
+      robot_(capacity.places),
+      map_(synthetic_map(places_, config, capacity)),
       detector_(config, map_),
       descriptor_(capacity.descriptor_size) {
   for (std::size_t frame = 0; frame < config.sequence_length; ++frame) {

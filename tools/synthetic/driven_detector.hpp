@@ -21,13 +21,7 @@ class DrivenDetector {
 
   /// Makes the map, and drives until the window is full.
   /// Work: the map, place by place, in the memory that it stays in.
-  DrivenDetector(const MatcherConfig& config, const Capacity& capacity)
-      : DrivenDetector(config, capacity, capacity.places) {}
-
-  /// The same with fewer synthetic places, 4 at least. The robot drives through the first half
-  /// of them; what else the map has room for are copies of the other half, which never look like
-  /// what the robot sees.
-  DrivenDetector(const MatcherConfig& config, const Capacity& capacity, std::size_t synthetic);
+  DrivenDetector(const MatcherConfig& config, const Capacity& capacity);
 
   /// Drives to where the next frame is, and describes what is there.
   void drive();
