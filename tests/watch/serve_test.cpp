@@ -81,8 +81,13 @@ class Serve : public test::Program {
     return false;
   }
   [[nodiscard]] std::string ended() const {
-    for (int n = 0; n < 1200 && !exists("code.txt"); ++n) std::this_thread::sleep_for(50ms);
-    return test::read_all(file("code.txt"));
+    // The shell makes the file before it writes.
+    std::string code;
+    for (int n = 0; n < 1200 && !code.ends_with('\n'); ++n) {
+      std::this_thread::sleep_for(50ms);
+      code = test::read_all(file("code.txt"));
+    }
+    return code;
   }
   /// Lines of a run, without the times that no two runs share.
   [[nodiscard]] std::vector<Json> lines(const std::string& name) const {
