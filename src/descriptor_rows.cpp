@@ -114,8 +114,8 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
       quantised_(arena.take<std::int8_t>(
           "what a sketch is made of",
           words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
-      both_(arena.take<std::int8_t>("what a sketch is made of",
-                                    words_ > 0 ? std::uint64_t{2} * form.size : 0)),
+      both_(arena.take<std::uint8_t>("what a sketch is made of",
+                                     words_ > 0 ? std::uint64_t{2} * form.size : 0)),
       sketched_values_(
           arena.take<SketchedValue>("what a sketch is made of", sketched_values(words_))),
       sketches_(arena.take<std::uint64_t>(names.sketches, std::uint64_t{rows} * words_)),
@@ -157,7 +157,7 @@ std::uint64_t DescriptorRows::sketch_room(const DescriptorForm& form) noexcept {
 }
 
 void DescriptorRows::sketch(std::span<const std::size_t> rows,
-                            std::span<std::int8_t> room) noexcept {
+                            std::span<std::uint8_t> room) noexcept {
   if (words_ == 0 || rows.empty() || form_.arithmetic == Arithmetic::sketch) return;
   if (form_.arithmetic == Arithmetic::float32) {
     for (const std::size_t row : rows) {

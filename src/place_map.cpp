@@ -52,8 +52,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
       standardised_(
           arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
-      side_by_side_(arena.take<std::int8_t>("sketches of saved places, while they are made",
-                                            DescriptorRows::sketch_room(rows_.form()))),
+      side_by_side_(arena.take<std::uint8_t>("sketches of saved places, while they are made",
+                                             DescriptorRows::sketch_room(rows_.form()))),
       spacing_(
           arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
       first_visits_(arena.take<std::uint64_t>("visits of one place",

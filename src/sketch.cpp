@@ -21,18 +21,21 @@ std::uint64_t random_number(std::uint64_t n) noexcept {
   return z ^ (z >> 31U);
 }
 
+// What is turned over at once: 16 values of 16 descriptors.
+constexpr std::size_t tile_size = 16;
+
 // Values of one descriptor, in a register where the processor has such.
-using Values [[gnu::vector_size(sketched_together)]] = std::int8_t;
+using Values [[gnu::vector_size(tile_size)]] = std::uint8_t;
 
 /// As many values of each descriptor as there are descriptors.
 struct Tile {
-  Values rows[sketched_together];
+  Values rows[tile_size];
 };
 
 /// Writes a value of a row in the first half, then one of the row as far on in the second, and so
 /// on. Four times, and rows have become columns.
 void alternate(const Tile& from, Tile& to) noexcept {
-  constexpr std::size_t half = sketched_together / 2;
+  constexpr std::size_t half = tile_size / 2;
   for (std::size_t i = 0; i < half; ++i) {
     const Values one = from.rows[i];
     const Values other = from.rows[i + half];
@@ -45,7 +48,7 @@ void alternate(const Tile& from, Tile& to) noexcept {
 
 /// @param both [2 D, abreast] descriptors side by side, and their negatives
 template <std::size_t abreast>
-void sketches_of(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+void sketches_of(const std::uint8_t* both, const SketchedValue* chosen, std::size_t words,
                  std::uint64_t* const* out) noexcept {
   const SketchedValue* end = chosen;
   for (std::size_t word = 0; word < words; ++word) {
@@ -58,11 +61,12 @@ void sketches_of(const std::int8_t* both, const SketchedValue* chosen, std::size
       for (std::size_t bit = 0; bit < bits_together; ++bit) {
         value -= values_per_bit;
         for (std::size_t i = 0; i < abreast; ++i) {
-          std::int16_t sum = 0;
+          std::uint16_t sum = 0;
           for (std::size_t v = 0; v < values_per_bit; ++v) {
-            sum = static_cast<std::int16_t>(sum + both[value[v] * abreast + i]);
+            sum = static_cast<std::uint16_t>(sum + both[value[v] * abreast + i]);
           }
-          bits[i] = static_cast<std::uint16_t>(bits[i] + bits[i] + (sum > 0 ? 1 : 0));
+          const bool above = sum > values_per_bit * raised_by;
+          bits[i] = static_cast<std::uint16_t>(bits[i] + bits[i] + (above ? 1 : 0));
         }
       }
       for (std::size_t i = 0; i < abreast; ++i) whole[i] |= std::uint64_t{bits[i]} << part;
@@ -82,50 +86,57 @@ void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue
   }
 }
 
-void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_t> out) noexcept {
-  std::ranges::copy(descriptor, out.begin());
-  std::ranges::transform(descriptor, out.subspan(descriptor.size()).begin(),
-                         [](std::int8_t value) { return static_cast<std::int8_t>(-value); });
+void with_negative(std::span<const std::int8_t> descriptor, std::span<std::uint8_t> out) noexcept {
+  std::ranges::transform(descriptor, out.begin(), [](std::int8_t value) {
+    return static_cast<std::uint8_t>(raised_by + value);
+  });
+  std::ranges::transform(descriptor, out.subspan(descriptor.size()).begin(), [](std::int8_t value) {
+    return static_cast<std::uint8_t>(raised_by - value);
+  });
 }
 
-void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
+void sketch(std::span<const std::uint8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept {
   std::uint64_t* const alone = out.data();
   sketches_of<1>(both.data(), chosen.data(), out.size(), &alone);
 }
 
 void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
-                  std::size_t descriptor_size, std::span<std::int8_t> out) noexcept {
-  std::int8_t* plain = out.data();
-  std::int8_t* negative = plain + sketched_together * descriptor_size;
-  const auto put = [&](const Values& values) {
-    const Values negated = -values;
-    std::memcpy(plain, &values, sketched_together);
-    std::memcpy(negative, &negated, sketched_together);
-    plain += sketched_together;
-    negative += sketched_together;
+                  std::size_t descriptor_size, std::span<std::uint8_t> out) noexcept {
+  const auto put = [&](const Values& values, std::size_t value, std::size_t first) {
+    const Values plain = values + raised_by;
+    const Values negative = raised_by - values;
+    std::uint8_t* const to = &out[value * sketched_together + first];
+    std::memcpy(to, &plain, tile_size);
+    std::memcpy(to + sketched_together * descriptor_size, &negative, tile_size);
   };
   std::size_t value = 0;
-  for (; value + sketched_together <= descriptor_size; value += sketched_together) {
-    Tile tile;
-    for (std::size_t i = 0; i < sketched_together; ++i) {
-      std::memcpy(&tile.rows[i], descriptors[i] + value, sketched_together);
+  for (; value + tile_size <= descriptor_size; value += tile_size) {
+    for (std::size_t first = 0; first < sketched_together; first += tile_size) {
+      Tile tile;
+      for (std::size_t i = 0; i < tile_size; ++i) {
+        std::memcpy(&tile.rows[i], descriptors[first + i] + value, tile_size);
+      }
+      Tile other;
+      alternate(tile, other);
+      alternate(other, tile);
+      alternate(tile, other);
+      alternate(other, tile);
+      for (std::size_t i = 0; i < tile_size; ++i) put(tile.rows[i], value + i, first);
     }
-    Tile other;
-    alternate(tile, other);
-    alternate(other, tile);
-    alternate(tile, other);
-    alternate(other, tile);
-    for (const Values& values : tile.rows) put(values);
   }
   for (; value < descriptor_size; ++value) {
-    Values values;
-    for (std::size_t i = 0; i < sketched_together; ++i) values[i] = descriptors[i][value];
-    put(values);
+    for (std::size_t first = 0; first < sketched_together; first += tile_size) {
+      Values values;
+      for (std::size_t i = 0; i < tile_size; ++i) {
+        values[i] = static_cast<std::uint8_t>(descriptors[first + i][value]);
+      }
+      put(values, value, first);
+    }
   }
 }
 
-void sketch_together(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+void sketch_together(const std::uint8_t* both, const SketchedValue* chosen, std::size_t words,
                      std::uint64_t* const* out) noexcept {
   sketches_of<sketched_together>(both, chosen, words, out);
 }

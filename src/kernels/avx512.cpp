@@ -29,8 +29,8 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
   lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
-void sketch_together_avx512(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
-                            std::uint64_t* const* out) noexcept {
+void sketch_together_avx512(const std::uint8_t* both, const std::uint32_t* chosen,
+                            std::size_t words, std::uint64_t* const* out) noexcept {
   sketches(both, chosen, words, out);
 }
 

@@ -62,7 +62,7 @@ void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
   lowest_lines<HighwayLanes>(sums, changes, lines, line_count, number, count, best, best_lines);
 }
 
-void sketch_together_neon(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+void sketch_together_neon(const std::uint8_t* both, const std::uint32_t* chosen, std::size_t words,
                           std::uint64_t* const* out) noexcept {
   sketches(both, chosen, words, out);
 }

@@ -39,8 +39,8 @@ void lowest_lines_avx512(const std::uint32_t* sums, const std::uint32_t* changes
                          const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
                          std::size_t count, std::uint32_t* best,
                          std::uint32_t* best_lines) noexcept;
-void sketch_together_avx512(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
-                            std::uint64_t* const* out) noexcept;
+void sketch_together_avx512(const std::uint8_t* both, const std::uint32_t* chosen,
+                            std::size_t words, std::uint64_t* const* out) noexcept;
 std::uint32_t hamming_avx2(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
 void hamming_column_avx2(const std::uint64_t* query, const std::uint64_t* rows, std::size_t words,
@@ -50,7 +50,7 @@ void sum_diagonals_avx2(const std::uint16_t* const* values, std::size_t window, 
 void lowest_lines_avx2(const std::uint32_t* sums, const std::uint32_t* changes,
                        const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
                        std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
-void sketch_together_avx2(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+void sketch_together_avx2(const std::uint8_t* both, const std::uint32_t* chosen, std::size_t words,
                           std::uint64_t* const* out) noexcept;
 std::uint32_t hamming_neon(const std::uint64_t* a, const std::uint64_t* b,
                            std::size_t words) noexcept;
@@ -61,7 +61,7 @@ void sum_diagonals_neon(const std::uint16_t* const* values, std::size_t window, 
 void lowest_lines_neon(const std::uint32_t* sums, const std::uint32_t* changes,
                        const LineThroughSums* lines, std::size_t line_count, std::uint32_t number,
                        std::size_t count, std::uint32_t* best, std::uint32_t* best_lines) noexcept;
-void sketch_together_neon(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+void sketch_together_neon(const std::uint8_t* both, const std::uint32_t* chosen, std::size_t words,
                           std::uint64_t* const* out) noexcept;
 
 // What the processor can do. Defined in files that are compiled for every processor of the family.

@@ -228,7 +228,7 @@ Forms::Forms(std::vector<float> descriptor)
   inverse_length = seqloop::inverse_length(quantise(values, bytes).squared_norm);
   std::vector<SketchedValue> chosen(sketched_values(sketch.size()));
   choose_sketched_values(bytes.size(), chosen);
-  std::vector<std::int8_t> both(2 * bytes.size());
+  std::vector<std::uint8_t> both(2 * bytes.size());
   with_negative(bytes, both);
   seqloop::sketch(both, chosen, sketch);
 }

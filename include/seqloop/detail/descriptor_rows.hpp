@@ -74,7 +74,7 @@ class DescriptorRows {
   /// @param rows up to `sketched_together`
   /// @param room [sketch_room()]
   /// Allocates: never.
-  void sketch(std::span<const std::size_t> rows, std::span<std::int8_t> room) noexcept;
+  void sketch(std::span<const std::size_t> rows, std::span<std::uint8_t> room) noexcept;
 
   /// Values that `sketch` needs room for; none where rows are sketched one by one.
   [[nodiscard]] static std::uint64_t sketch_room(const DescriptorForm& form) noexcept;
@@ -146,7 +146,7 @@ class DescriptorRows {
   std::span<std::int8_t> small_;       // [rows, stride], int8
   std::span<double> inverse_lengths_;  // [rows], int8
   std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
-  std::span<std::int8_t> both_;        // [2 D], a descriptor and its negative
+  std::span<std::uint8_t> both_;       // [2 D], a descriptor and its negative
   std::span<SketchedValue> sketched_values_;
   std::span<std::uint64_t> sketches_;  // [rows, words_]
   std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side

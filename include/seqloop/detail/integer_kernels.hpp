@@ -105,7 +105,7 @@ struct IntegerKernels {
   /// @param chosen [sketched_values(words)] for this D
   /// @param out    [words] each, written
   /// Work: as `sketch` for each; side by side.
-  void (*sketch_together)(const std::int8_t* both, const std::uint32_t* chosen, std::size_t words,
+  void (*sketch_together)(const std::uint8_t* both, const std::uint32_t* chosen, std::size_t words,
                           std::uint64_t* const* out) noexcept;
 };
 

@@ -28,9 +28,13 @@ using SketchedValue = std::uint32_t;
 /// @param out [sketched_values(words)] written; those of a longer sketch begin with the shorter's
 void choose_sketched_values(std::size_t descriptor_size, std::span<SketchedValue> out) noexcept;
 
+/// Values and their negatives are written so much larger: then none is below 0, and the highest bit
+/// of four values' mean, rounded up, is whether their sum was above 0.
+inline constexpr std::uint8_t raised_by = 127;
+
 /// Writes a descriptor and its negative behind it, so that nothing but adding is left to do.
-/// @param descriptor [D] -127 .. 127   @param out [2 D] written
-void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_t> out) noexcept;
+/// @param descriptor [D] -127 .. 127   @param out [2 D] written, `raised_by`
+void with_negative(std::span<const std::int8_t> descriptor, std::span<std::uint8_t> out) noexcept;
 
 /// Keeps of a descriptor on which side of some planes it lies: bit b is whether the sum of
 /// `values_per_bit` of its values, chosen by chance, half of them by chance subtracted, is above 0.
@@ -42,12 +46,12 @@ void with_negative(std::span<const std::int8_t> descriptor, std::span<std::int8_
 /// @param out    [words] written
 /// Work: words * 64 * values_per_bit adds, whatever D is. Allocates: never.
 /// Source: src/README.md, section 5.3.
-void sketch(std::span<const std::int8_t> both, std::span<const SketchedValue> chosen,
+void sketch(std::span<const std::uint8_t> both, std::span<const SketchedValue> chosen,
             std::span<std::uint64_t> out) noexcept;
 
 /// Descriptors that are sketched together: what is looked up for one of their values is looked up
 /// for all, and their sums are added side by side, in a fraction of the time.
-inline constexpr std::size_t sketched_together = 16;
+inline constexpr std::size_t sketched_together = 32;
 
 /// Values that `side_by_side` writes, and needs room for.
 [[nodiscard]] constexpr std::uint64_t side_by_side_values(std::size_t descriptor_size) noexcept {
@@ -56,13 +60,13 @@ inline constexpr std::size_t sketched_together = 16;
 
 /// Writes value 0 of all descriptors, then value 1 of all, and so on; and then all negatives.
 /// @param descriptors [D] each, -127 .. 127, outside of `out`
-/// @param out [side_by_side_values(D)] written
+/// @param out [side_by_side_values(D)] written, `raised_by`
 /// Work: 3 times what is written. Allocates: never.
 void side_by_side(std::span<const std::int8_t* const, sketched_together> descriptors,
-                  std::size_t descriptor_size, std::span<std::int8_t> out) noexcept;
+                  std::size_t descriptor_size, std::span<std::uint8_t> out) noexcept;
 
 /// What `IntegerKernels::sketch_together` is, in plain C++.
-void sketch_together(const std::int8_t* both, const SketchedValue* chosen, std::size_t words,
+void sketch_together(const std::uint8_t* both, const SketchedValue* chosen, std::size_t words,
                      std::uint64_t* const* out) noexcept;
 
 /// How far apart two unit vectors are, of which so large a share of the bits differs: the angle

@@ -46,7 +46,7 @@ struct Places {
     SyntheticPlaces street(size.descriptor_size);
     std::vector<SketchedValue> chosen(sketched_values(sketch_words));
     choose_sketched_values(size.descriptor_size, chosen);
-    std::vector<std::int8_t> both(2 * size.descriptor_size);
+    std::vector<std::uint8_t> both(2 * size.descriptor_size);
     for (std::size_t row = 0; row < size.places; ++row) {
       const std::span<float> place = rows.subspan(row * query.size(), size.descriptor_size);
       street.see(static_cast<double>(row), 0.0F, place);
