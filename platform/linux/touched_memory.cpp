@@ -15,10 +15,18 @@ namespace {
 // What a thread touches at least: some milliseconds' worth.
 constexpr std::size_t least_share = std::size_t{16} << 20U;
 
+// What is asked for by one call: while it lasts, nobody in the process can map memory or begin a
+// thread, and who touches next waits behind those that want to.
+constexpr std::size_t piece_bytes = std::size_t{1} << 20U;
+
 /// Linux has this from 5.14 on; before, pages come when they are first written to.
 void touch(std::span<std::byte> memory) noexcept {
 #ifdef MADV_POPULATE_WRITE
-  ::madvise(memory.data(), memory.size(), MADV_POPULATE_WRITE);
+  while (!memory.empty()) {
+    const std::span<std::byte> piece = memory.first(std::min(piece_bytes, memory.size()));
+    ::madvise(piece.data(), piece.size(), MADV_POPULATE_WRITE);
+    memory = memory.subspan(piece.size());
+  }
 #else
   static_cast<void>(memory);
 #endif

@@ -19,6 +19,9 @@ namespace {
 // Smaller files are read before a thread is worth its while.
 constexpr std::uint64_t least_bytes = std::uint64_t{16} << 20U;
 
+constexpr const char* few_pages = "PRAGMA cache_size = 16";
+constexpr const char* as_ever = "PRAGMA cache_size = -2000";  // SQLite's own choice, in KB
+
 /// The open file of a connection, if it still is the one of its name.
 sqlite3_file* file_of(const Database& database) noexcept {
   int moved = 0;
@@ -46,9 +49,20 @@ UncachedFile::UncachedFile(const std::filesystem::path& path) noexcept {
     const auto [known, first] = open.try_emplace({status.st_dev, status.st_ino}, -1);
     if (first) known->second = ::open(path.c_str(), O_RDONLY | O_DIRECT | O_CLOEXEC);
     descriptor_ = known->second;
-    if (descriptor_ >= 0) bytes_ = bytes;
+    if (descriptor_ < 0) return;
+    bytes_ = bytes;
+    if (bytes > std::numeric_limits<std::size_t>::max()) return;
+    // Never looked into. Mapped once: each time would wait for threads that take memory.
+    void* const mapped =
+        ::mmap(nullptr, static_cast<std::size_t>(bytes), PROT_NONE, MAP_SHARED, descriptor_, 0);
+    if (mapped == MAP_FAILED) return;
+    mapped_ = {static_cast<std::byte*>(mapped), static_cast<std::size_t>(bytes)};
   } catch (const std::bad_alloc&) {  // then it is read as ever
   }
+}
+
+UncachedFile::~UncachedFile() {
+  if (!mapped_.empty()) ::munmap(mapped_.data(), mapped_.size());
 }
 
 std::size_t UncachedFile::read(std::uint64_t at, std::span<std::byte> to) const noexcept {
@@ -62,24 +76,27 @@ std::size_t UncachedFile::read(std::uint64_t at, std::span<std::byte> to) const 
 
 /// Whether most of a piece is in the system's cache; where that is not told to everybody, it is.
 bool UncachedFile::cached(std::uint64_t at, std::size_t bytes) const noexcept {
+  if (at >= mapped_.size()) return false;
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  void* const mapped =
-      ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, descriptor_, static_cast<off_t>(at));
-  if (mapped == MAP_FAILED) return false;
   std::array<unsigned char, 1024> there{};
-  const std::size_t pages = std::min(there.size(), bytes / page);
-  const bool told = ::mincore(mapped, pages * page, there.data()) == 0;
-  ::munmap(mapped, bytes);
+  const std::span<std::byte> piece = mapped_.subspan(static_cast<std::size_t>(at));
+  const std::size_t pages =
+      std::min({there.size(), bytes / page, (piece.size() + page - 1) / page});
+  if (::mincore(piece.data(), pages * page, there.data()) != 0) return false;
   const auto in_cache =
       std::count_if(there.begin(), there.begin() + static_cast<std::ptrdiff_t>(pages),
                     [](unsigned char state) { return (state & 1U) != 0; });
-  return told && static_cast<std::size_t>(in_cache) > pages / 2;
+  return static_cast<std::size_t>(in_cache) > pages / 2;
 }
 
 PagesAhead::PagesAhead(const Database& database, const std::filesystem::path& path) : from_(path) {
   if (from_.bytes() == 0) return;
   file_ = file_of(database);
   if (file_ == nullptr) return;
+  connection_ = database.handle();
+  // What SQLite's own cache grows by, a page at a time, is asked of the system, and waits for
+  // threads that take memory.
+  sqlite3_exec(connection_, few_pages, nullptr, nullptr, nullptr);
   memory_ =
       std::make_unique_for_overwrite<std::byte[]>(pieces * piece_bytes + UncachedFile::alignment);
   void* begin = memory_.get();
@@ -96,7 +113,10 @@ PagesAhead::PagesAhead(const Database& database, const std::filesystem::path& pa
 }
 
 PagesAhead::~PagesAhead() {
-  if (file_ != nullptr) file_->pMethods = own_;
+  if (file_ != nullptr) {
+    file_->pMethods = own_;
+    sqlite3_exec(connection_, as_ever, nullptr, nullptr, nullptr);
+  }
   if (!thread_.joinable()) return;
   {
     const std::scoped_lock lock(mutex_);

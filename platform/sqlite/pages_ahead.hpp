@@ -27,6 +27,11 @@ class UncachedFile {
  public:
   /// Opens nothing where the file is small.
   explicit UncachedFile(const std::filesystem::path& path) noexcept;
+  UncachedFile(const UncachedFile&) = delete;
+  UncachedFile& operator=(const UncachedFile&) = delete;
+  UncachedFile(UncachedFile&&) = delete;
+  UncachedFile& operator=(UncachedFile&&) = delete;
+  ~UncachedFile();
 
   /// Of the file; 0 where it cannot be read this way.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
@@ -43,6 +48,7 @@ class UncachedFile {
 
   int descriptor_ = -1;
   std::uint64_t bytes_ = 0;
+  std::span<std::byte> mapped_;  // to ask what of it is in the cache
 };
 
 /// While it lives, a thread reads a database's file ahead of its connection, megabytes at a time.
@@ -91,6 +97,7 @@ class PagesAhead {
   UncachedFile from_;
   sqlite3_file* file_ = nullptr;  // null: nothing is read ahead
   const sqlite3_io_methods* own_ = nullptr;
+  sqlite3* connection_ = nullptr;
   Methods methods_{};
   std::unique_ptr<std::byte[]> memory_;
 

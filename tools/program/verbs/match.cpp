@@ -94,6 +94,7 @@ void match(const MatchSettings& settings, Faults faults) {
               : Capacity{reference ? reference->rows : query->rows, query->columns};
   suit_slice(config, settings.matcher, capacity.places);
   live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
+  live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
   PlaceMap map(config, capacity, memory.span(), true);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
@@ -103,7 +104,6 @@ void match(const MatchSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (lasting) lasting->load(map);
-  live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
   memory.wait();
   working_memory.wait();
   Detector detector(config, map, working_memory.span());

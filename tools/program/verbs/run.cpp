@@ -125,6 +125,9 @@ void run(const RunSettings& settings, Faults faults) {
   live::TouchedMemory memory = with_room(setup, [&] {
     return live::TouchedMemory(PlaceMap::bytes_needed(setup.config, setup.capacity()));
   });
+  live::TouchedMemory working_memory = with_room(setup, [&] {
+    return live::TouchedMemory(Detector::bytes_needed(setup.config, setup.capacity()));
+  });
   PlaceMap map(setup.config, setup.capacity(), memory.span(), true);
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
@@ -138,9 +141,6 @@ void run(const RunSettings& settings, Faults faults) {
     tell_blank(settings.reference, blank_places, map.size());
   }
   if (setup.map) setup.map->load(map);
-  live::TouchedMemory working_memory = with_room(setup, [&] {
-    return live::TouchedMemory(Detector::bytes_needed(setup.config, setup.capacity()));
-  });
   memory.wait();
   working_memory.wait();
   Detector detector(setup.config, map, working_memory.span());

@@ -10,8 +10,8 @@
 namespace seqloop::live {
 
 /// Memory for what is large, such as a map, each page of which is there once it is waited for. A
-/// program that touches them one by one waits for the system at each; here it is asked for all at
-/// once, by a thread for each processor, while a map is read from a disk.
+/// program that touches them one by one waits for the system at each; here it is asked for in
+/// large pieces, by a thread for each processor, while a map is read from a disk.
 class TouchedMemory {
  public:
   /// Begins to ask for the pages. @param bytes 1 or more. Throws SetupError: they are not to be had
