@@ -23,10 +23,18 @@ constexpr std::size_t apart = 8;
 constexpr double leaving = 0.01;
 constexpr double coming = 0.001;
 
+// A small map is a small part of the world: it is the less likely to be come back to.
+constexpr double small_map = 200.0;
+
 // A robot that is switched on, and has a map of earlier drives, is likelier on it than one that has
 // just left it.
 constexpr double coming_at_first = 0.02;
 constexpr std::size_t first_frames = 20;
+
+// How much the best wrong sums vary at least. A drive through new places has wrong rows in store
+// that do better than those it has met.
+constexpr double least_variance = 0.25;
+constexpr double least_variance_of_new_places = 1.0;
 
 constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
@@ -88,8 +96,8 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   double on = 0.0;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const bool begins = weighed_++ < first_frames;
-  const bool earlier_drives = localises_ || view.map->order().sessions() > 1;
-  const double comes = begins && earlier_drives ? coming_at_first : coming;
+  const double comes = (begins && has_earlier_drives(view) ? coming_at_first : coming) *
+                       std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double left = leaving * novelty_;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
@@ -98,6 +106,11 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   weigh(view, *scene);
   judge(view, *scene);
   return sketches_;
+}
+
+/// Whether the map holds other drives than the one that is being driven.
+bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
+  return localises_ || view.map->order().sessions() > 1;
 }
 
 /// Has the processor fetch what weighing the rows found will read and their finding has not.
@@ -309,9 +322,10 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
                scene.novelty > least_novelty ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
+  const double varies = has_earlier_drives(view) ? least_variance : least_variance_of_new_places;
   likeliest_ = Likeliest{top->row,
                          index,
-                         {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain),
+                         {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain, varies),
                           top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
 }
 

@@ -42,8 +42,8 @@ void WrongRows::settle() noexcept {
   count_ = 0;
 }
 
-double WrongRows::lead(double sum) const noexcept {
-  return (sum - now_.mean) / std::sqrt(now_.variance + 0.25);
+double WrongRows::lead(double sum, double least_variance) const noexcept {
+  return (sum - now_.mean) / std::sqrt(now_.variance + least_variance);
 }
 
 }  // namespace seqloop

@@ -99,7 +99,8 @@ class NaiveBelief {
       at.mass *= 1.0 - 0.01 * w;
     }
     const bool begins = weighed_++ < 20;
-    const double coming = begins && earlier_drives_ ? 0.02 : 0.001;
+    const double coming = (begins && earlier_drives_ ? 0.02 : 0.001) *
+                          std::min(1.0, static_cast<double>(view.rows) / 200.0);
     const double born = coming * std::min(1.0, 4.0 * w) * new_place;
     new_place += 0.01 * w * on - born;
     std::erase_if(moved, [&](const auto& at) { return at.first >= view.map->size(); });
@@ -219,7 +220,7 @@ class NaiveBelief {
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
     evidence = {std::log(big / (1.0 - big)),
-                (best->second.gain - mean) / std::sqrt(variance + 0.25),
+                (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 0.25 : 1.0)),
                 best->second.clear,
                 std::log(1.0 + best->second.age),
                 0.0,
@@ -269,6 +270,10 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
     expect_like_the_naive_one(test::way(seed, 200, 0.5F, 1, size),
                               test::way(seed, 200, 0.5F, 2, size));
   }
+}
+
+TEST(PlaceBeliefOracle, OnASmallMap) {
+  expect_like_the_naive_one(test::way(1, 90, 0.5F, 1, size), test::way(1, 90, 0.5F, 2, size));
 }
 
 TEST(PlaceBeliefOracle, OnAWayOfTheSameDrive) {

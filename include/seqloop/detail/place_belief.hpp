@@ -104,6 +104,7 @@ class PlaceBelief {
     BeliefTraces::Index parent;
   };
 
+  [[nodiscard]] bool has_earlier_drives(const SceneView& view) const noexcept;
   static void prefetch(const SceneView& view) noexcept;
   void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void keep_likeliest() noexcept;

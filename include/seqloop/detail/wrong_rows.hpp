@@ -53,7 +53,8 @@ class WrongRows {
   }
 
   /// How far a sum lies above the best wrong ones, in their deviations.
-  [[nodiscard]] double lead(double sum) const noexcept;
+  /// @param least_variance added to theirs; above 0
+  [[nodiscard]] double lead(double sum, double least_variance) const noexcept;
 
   [[nodiscard]] double mean() const noexcept { return now_.mean; }
 

@@ -83,6 +83,9 @@ void resolve_decision(const MatcherSettings& settings, MatcherConfig& config, Fa
   config.min_probability = settings.min_probability.value_or(config.min_probability);
   config.patience = settings.patience.value_or(config.patience);
   config.max_uniqueness = settings.max_uniqueness.value_or(config.max_uniqueness);
+  constexpr std::size_t by_uniqueness = 100;
+  const bool sure_of_near = config.decision == Decision::probability;
+  config.exclude = settings.exclude.value_or(sure_of_near ? config.exclude : by_uniqueness);
   if (config.decision == Decision::probability) {
     if (settings.max_uniqueness) {
       faults.push_back({"max-uniqueness", "the probability decides",
@@ -117,7 +120,9 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        }});
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
-  options.count("exclude", config.exclude, "closing loops: newest frames that are no places [100]");
+  options.add({"exclude", ValueKind::count,
+               "closing loops: newest frames that are no places [60; 100 by uniqueness]",
+               [&settings](std::string_view value) { settings.exclude = parse_count(value); }});
   options.add({"full-map", ValueKind::text,
                "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
                "where they are densest [refuse]",
