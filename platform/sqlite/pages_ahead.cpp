@@ -93,10 +93,6 @@ PagesAhead::PagesAhead(const Database& database, const std::filesystem::path& pa
   if (from_.bytes() == 0) return;
   file_ = file_of(database);
   if (file_ == nullptr) return;
-  connection_ = database.handle();
-  // What SQLite's own cache grows by, a page at a time, is asked of the system, and waits for
-  // threads that take memory.
-  sqlite3_exec(connection_, few_pages, nullptr, nullptr, nullptr);
   memory_ =
       std::make_unique_for_overwrite<std::byte[]>(pieces * piece_bytes + UncachedFile::alignment);
   void* begin = memory_.get();
@@ -110,6 +106,10 @@ PagesAhead::PagesAhead(const Database& database, const std::filesystem::path& pa
   methods_.xRead = read;
   methods_.self = this;
   file_->pMethods = &methods_;
+  // What SQLite's own cache grows by, a page at a time, is asked of the system, and waits for
+  // threads that take memory.
+  connection_ = database.handle();
+  sqlite3_exec(connection_, few_pages, nullptr, nullptr, nullptr);
 }
 
 PagesAhead::~PagesAhead() {
