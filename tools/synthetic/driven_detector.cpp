@@ -14,7 +14,7 @@ namespace {
 constexpr float noise = 1.0F;
 
 // More do not change what is standardised by.
-constexpr std::size_t most_learnt = 5000;
+constexpr std::size_t most_learnt = 500;
 
 PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
                        const Capacity& capacity) {
