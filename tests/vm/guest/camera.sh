@@ -80,7 +80,7 @@ says_that_the_camera_is_busy() {
   camera
   v4l2-ctl --stream-mmap --stream-count=0 >/dev/null 2>&1 &
   local other=$!
-  sleep "$PATIENCE"
+  expect "the other one has it" within 15 streams /dev/video0 "$other"
   expect "it says why" refused 2 busy --source /dev/video0 $small
   kill "$other"
   wait "$other" 2>/dev/null
@@ -91,8 +91,7 @@ ends_whole() {
   camera
   local out=$WORK/whole-$1.jsonl
   live --source /dev/video0 $small --out "$out"
-  expect "the device is open" within 15 holds /dev/video0
-  sleep $((2 + PATIENCE))
+  expect "frames come" within 20 has_written 5 "$out"
   kill -"$1" "$live"
   expect "exit code 0" ends 0
   expect "the output is there" [ -s "$out" ]

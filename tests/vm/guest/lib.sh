@@ -97,8 +97,9 @@ ends() {
   [ "$code" = "$1" ] || { echo "exit code $code"; return 1; }
 }
 
-# holds DEVICE: the live run has it open
-holds() { ls -l "/proc/$live/fd" 2>/dev/null | grep -q "$1\$"; }
+# streams DEVICE [PROCESS]: the live run, or another process, has mapped the device's buffers, which it
+# does just before it asks for pictures
+streams() { grep -q "$1\$" "/proc/${2:-$live}/maps" 2>/dev/null; }
 
 # count_of STATUS [FILE], good_lines [FILE]: lines with the status; lines of frames that were searched with
 # The status of a line stands behind its time; its answers have others.
@@ -110,6 +111,13 @@ all_lines() { grep -vc '"time_s":[^,]*,"status":"ended"' "$lines"; }
 # has N COUNT...: the count is at least N; is N COUNT...: exactly
 has() { local n=$1; shift; [ "$("$@")" -ge "$n" ]; }
 is() { local n=$1; shift; [ "$("$@")" = "$n" ]; }
+
+# has_written N FILE: a run that will leave FILE has written N lines of frames that were searched with
+has_written() {
+  local written
+  written=$(echo "${2%/*}/.${2##*/}.partial-"*)
+  [ -e "$written" ] && has "$1" good_lines "$written"
+}
 
 # good_again: five more frames that were searched with, soon
 good_again() { local before; before=$(good_lines); within 15 has $((before + 5)) good_lines; }

@@ -11,10 +11,10 @@ feed() {
   feeder=$!
   expect "the feeder is ready" within 15 grep -q ready feeder.log
 }
-# The moment is for the buffers: nothing outside the reader shows that it has started.
+# The moment is for the last step, which nothing outside the reader shows.
 reader_waits() {
-  expect "the device is open" within 15 holds /dev/video5
-  sleep "$PATIENCE"
+  expect "the reader has its buffers" within 15 streams /dev/video5
+  sleep 0.5
 }
 
 # plays FRAMES FEEDER_FLAGS...: all lines of a run that ends after FRAMES
