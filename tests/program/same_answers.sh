@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # The same descriptors give the same match list, to the last byte, whatever processor and kernels
-# compare them, in whole numbers and in floats: here, and cross-built in an emulator.
+# compare them, in whole numbers and in floats: here, and cross-built in an emulator. A map that one
+# processor has saved is the same to the others.
 # Usage: same_answers.sh SEQLOOP SHARED kernels CHOSEN    CHOSEN: seqloop-chosen-kernels
 #        same_answers.sh SEQLOOP SHARED boards BUILDS
 #   SEQLOOP  the program
@@ -27,6 +28,17 @@ if [ "$what" = boards ]; then
     command -v "$(emulator_of $arch)" >/dev/null || missing "$(emulator_of $arch)"
   done
 fi
+# on BOARD ARGUMENT...: the program, on one of the boards or `here`
+on() {
+  local arch processor
+  read -r arch processor <<<"$1"
+  shift
+  if [ "$arch" = here ]; then
+    "$seqloop" "$@"
+  else
+    "$(emulator_of "$arch")" -cpu "$processor" -L "$other/sysroot/$arch" "$(program_of "$arch")" "$@"
+  fi
+}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -45,6 +57,7 @@ cat >options <<'EOF'
 --method seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --paper
 --method o-seqcnnslam --reference day_left.npy --query night_right.npy --ds 20 --arithmetic float
 EOF
+quietly() { "$@" 2>errors </dev/null || { cat errors; exit 1; }; }
 # match_all NAME COMMAND...: all lists after each other, in NAME.csv
 match_all() {
   local name=$1 job
@@ -68,11 +81,22 @@ if [ "$what" = boards ]; then
   matching=()
   for board in "${boards[@]}"; do
     read -r arch processor <<<"$board"
-    same "$arch-$processor" "$(emulator_of "$arch")" -cpu "$processor" \
-      -L "$other/sysroot/$arch" "$(program_of "$arch")" &
+    same "$arch-$processor" on "$board" &
     matching+=($!)
   done
   for board in "${matching[@]}"; do wait "$board"; done
+  movers=(here "aarch64 max" "armhf max")
+  for saver in "${movers[@]}"; do
+    quietly on "$saver" match --query day_left.npy --map "$saver.seqloop" --out "$saver-day.csv"
+    for reader in "${movers[@]}"; do
+      quietly on "$reader" match --query night_right.npy --map "$saver.seqloop" --read-only \
+        --out night.csv
+      [ -e first.csv ] || cp night.csv first.csv
+      cmp first.csv night.csv || { echo "saved by $saver, read by $reader"; exit 1; }
+    done
+  done
+  echo "maps of ${#movers[@]} processors, read by each: $(grep -c ',1$' first.csv) accepted"
+  [ "$(grep -c ',1$' first.csv)" -gt 150 ]
   exit
 fi
 kernels=$("$seqloop" bench --only column --n 16 --d 64 --rounds 1 --json 2>/dev/null |
