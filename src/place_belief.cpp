@@ -310,6 +310,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
       at.wrong = decay * at.wrong + (same && on_map ? 0.0 : at.told);
       if (same) {
         place += at.mass;
+        if (on_map) share_history(view.map->order(), *top, at);
       } else if (!view.map->same_place(at.row, rows[best].row) &&
                  (!other || at.wrong > other->sum)) {
         other = {at.row, at.wrong};
@@ -327,6 +328,17 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
                          index,
                          {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain, varies),
                           top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
+}
+
+/// Another visit of the likeliest row's place takes over how the robot came here. Where the visit
+/// that is followed ends, or its rows go from the map, the other one need not start anew.
+void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
+                                Hypothesis& at) noexcept {
+  if (at.past >= top.past || order.apart(at.row, top.row) <= PlaceMap::beside) return;
+  at.past = top.past;
+  at.age = std::max(at.age, top.age);
+  const auto index = static_cast<std::size_t>(&at - rows_.data());
+  traces_.set(index, at.row, top.parent, at.told);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the

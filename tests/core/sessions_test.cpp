@@ -10,6 +10,7 @@
 
 #include "core/matcher.hpp"
 #include "core/shown_drive.hpp"
+#include "core/ways.hpp"
 
 namespace seqloop {
 namespace {
@@ -220,6 +221,45 @@ TEST_P(Sessions, ThatShowTheSamePlacesDoNotContestThem) {
   std::printf("accepted in one session %zu, in five %zu\n", accepted[0], accepted[1]);
   EXPECT_GT(accepted[0], 150U);
   EXPECT_GE(accepted[1], accepted[0] - accepted[0] / 10);
+}
+
+TEST_P(Sessions, OneThatEndsHandsOverHowTheRobotCame) {
+  // A road that one session saw up to a border, and another from a little before it on; what both
+  // saw is linked. Past the border the robot sees so badly that it hardly finds out anew where it
+  // is, but it has come there along a road that it knows well.
+  constexpr std::size_t border = 100;
+  constexpr std::size_t both = 14;
+  constexpr std::size_t past = 60;
+  MatcherConfig config;
+  config.arithmetic = GetParam();
+  std::size_t right = 0;
+  std::size_t wrong = 0;
+  for (std::uint32_t road = 1; road <= 24; ++road) {
+    const Vectors first = test::way(road, border, 0.5F, 1);
+    const Vectors whole = test::way(road, border + past, 0.5F, 2);
+    const Vectors second(whole.begin() + (border - both), whole.end());
+    Vectors query = test::way(road, border, 0.5F, 3);
+    const Vectors badly = test::way(road, border + past, 24.0F, 3);
+    query.insert(query.end(), badly.begin() + border, badly.end());
+
+    PlaceMap map = map_of_sessions({first, second}, config, 0);
+    for (std::size_t row = 0; row < both; ++row) {
+      map.set_first_visit(border + row, map.order().number(border - both + row));
+    }
+    Detector detector(config, map);
+    const auto count = [&](std::span<const Answer> answers) {
+      for (const Answer& answer : answers) {
+        if (answer.frame < border || answer.gate != Gate::match) continue;
+        const std::size_t frame = answer.match->place - both;  // of the road
+        (frame <= answer.frame + 5 && answer.frame <= frame + 5 ? right : wrong) += 1;
+      }
+    };
+    for (const auto& seen : query) count(detector.step(seen).answers);
+    count(detector.finish());
+  }
+  std::printf("accepted past the border: %zu right, %zu wrong of %zu\n", right, wrong, 24 * past);
+  EXPECT_GT(right, 400U);
+  EXPECT_EQ(wrong, 0U);
 }
 
 /// Of the members: what lies between them is nobody's.
