@@ -9,12 +9,14 @@ BeliefTraces::BeliefTraces(Arena& arena, std::size_t depth, std::size_t width)
     : width_(width),
       parents_(arena.take<Index>("parents of hypotheses", depth * width)),
       steps_(arena.take<Traced>("traces of hypotheses", depth * width)),
-      novelties_(arena.take<float>("novelties of frames", depth)) {}
+      novelties_(arena.take<float>("novelties of frames", depth)),
+      changes_(arena.take<float>("changes of frames", depth)) {}
 
-void BeliefTraces::next(double novelty) noexcept {
+void BeliefTraces::next(double novelty, double change) noexcept {
   frames_ = std::min(frames_ + 1, novelties_.size());
   newest_ = newest_ + 1 < novelties_.size() ? newest_ + 1 : 0;
   novelties_[newest_] = static_cast<float>(novelty);
+  changes_[newest_] = static_cast<float>(change);
 }
 
 std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const noexcept {
@@ -24,8 +26,8 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
   auto at = static_cast<Index>(index);
   while (back < held && at != none) {
     const Traced& step = steps_[frame * width_ + at];
-    out[back++] = {step.row, static_cast<double>(step.gain),
-                   static_cast<double>(novelties_[frame])};
+    out[back++] = {step.row, static_cast<double>(step.gain), static_cast<double>(novelties_[frame]),
+                   static_cast<double>(changes_[frame])};
     at = parents_[frame * width_ + at];
     frame = (frame == 0 ? novelties_.size() : frame) - 1;
   }

@@ -141,7 +141,9 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
 
 void Detector::report_due(FrameReport& report, bool readable) noexcept {
   const std::size_t before = pending_.answers().size();
-  if (readable) pending_.believe(belief_, *map_, report.newest, window_began_);
+  if (readable) {
+    report.work.sketches += pending_.believe(belief_, *map_, report.newest, window_began_);
+  }
   pending_.answer(belief_, *map_, report.newest, window_began_);
   const std::span<const Answer> answers = pending_.answers().subspan(before);
   const bool whole = report.newest >= window_began_ + config_.sequence_length;

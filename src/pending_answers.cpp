@@ -52,7 +52,8 @@ void PendingAnswers::accept_from(float least) noexcept {
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  at(frame) = {frame, true, readable, false, false, 0, 0.0, {0.0, 0.0}, 0, 1.0, none, 0.0, 0, {}};
+  at(frame) = {frame,      true, readable, false, false, false, 0, 0.0,
+               {0.0, 0.0}, 0,    1.0,      none,  0.0,   0,     {}};
   end_ = frame + 1;
 }
 
@@ -67,14 +68,16 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * (waiting.left ? waiting.on.left : waiting.on.still);
 }
 
-void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-                             std::uint64_t oldest) noexcept {
+std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+                                    std::uint64_t oldest) noexcept {
   evidence_.reset();
   const auto& likeliest = belief.likeliest();
   at(newest).new_place = belief.new_place();
-  if (!likeliest) return;
+  if (!likeliest) return 0;
   evidence_ = likeliest->evidence;
-  const auto trace = trace_.first(belief.trace(likeliest->index, trace_));
+  const std::size_t born = belief.trace(likeliest->index, trace_);
+  std::size_t sketches = 0;
+  const auto trace = trace_.first(belief.follow_back(map, trace_, born, newest, sketches));
   at(newest).novelty = trace.front().novelty;
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
@@ -91,15 +94,18 @@ void PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint
   // A frame that stands still tells half as much as one that does not.
   constexpr double half = 0.5;
   const double least = half * belief.usual_novelty();
-  TraceSpan::take_usual(trace, agreed(map, newest, oldest, trace), belief.usual_gain(), least);
+  const double usual = belief.usual_gain();
+  TraceSpan::take_usual(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
   const std::span<const TraceSpan::On> on =
-      span_.find(trace, known ? before.right * before.on.still : 0.0, least, frames);
+      span_.find(trace, known ? before.right * before.on.still : 0.0, usual, least, frames);
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (frame.waits && frame.frame == newest - back) {
       look_back(map.order(), frame, trace[back].row, right, on[back], back);
+      frame.before_birth = back >= born;
     }
   }
+  return sketches;
 }
 
 /// How many of a trace's frames, from the newest on, came since the belief of the time agreed with
@@ -240,8 +246,9 @@ bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame)
   const Waiting& last = at(frame + after_centre_);
   // From 0 to 2 rows a frame, as the belief moves.
   return first.frame == frame - before && last.frame == frame + after_centre_ && first.believed &&
-         last.believed && std::min(probability(first), probability(last)) > half &&
-         first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
+         !first.before_birth && last.believed &&
+         std::min(probability(first), probability(last)) > half && first.row <= last.row &&
+         order.apart(first.row, last.row) <= 2 * (before + after_centre_);
 }
 
 /// Whether little was new in the window of a frame, for this drive.

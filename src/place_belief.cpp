@@ -11,14 +11,6 @@
 namespace seqloop {
 namespace {
 
-// Rows go on by 0, 1 or 2 a frame; a robot that stands may as well stay.
-constexpr std::array<double, 3> moving{0.06, 0.88, 0.06};
-constexpr std::array<double, 3> standing{0.45, 0.40, 0.15};
-constexpr double least_novelty = 0.02;
-
-// A frame is compared with those that lie so far off, too.
-constexpr std::size_t apart = 8;
-
 // Chances of a novel frame: to leave the map; to come back onto it.
 constexpr double leaving = 0.01;
 constexpr double coming = 0.001;
@@ -29,7 +21,6 @@ constexpr double small_map = 200.0;
 // A robot that is switched on, and has a map of earlier drives, is likelier on it than one that has
 // just left it.
 constexpr double coming_at_first = 0.02;
-constexpr std::size_t first_frames = 20;
 
 // How much the best wrong sums vary at least. A drive through new places has wrong rows in store
 // that do better than those it has met.
@@ -80,6 +71,7 @@ PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
       next_(arena.take<Hypothesis>("hypotheses of the next frame", used(config) ? most : 0)),
       moved_(arena.take<Moved>("hypotheses that have moved", used(config) ? 3 * most : 0)),
       gauge_(arena, used(config)),
+      first_frames_(arena, used(config)),
       traces_(arena, depth(config), most) {}
 
 std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
@@ -92,10 +84,11 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
     return sketches_;
   }
   novelty_ = scene->novelty;
-  move(view.map->order(), novelty_ > least_novelty ? moving : standing);
+  if (has_earlier_drives(view)) first_frames_.take(view, *scene);
+  move(view.map->order(), scene->moves());
   double on = 0.0;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
-  const bool begins = weighed_++ < first_frames;
+  const bool begins = weighed_++ < FirstFrames::most;
   const double comes = (begins && has_earlier_drives(view) ? coming_at_first : coming) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
@@ -103,6 +96,7 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
   give_birth(view, born / static_cast<double>(view.seen->scanned().bits.size()));
+  hand_over(*view.map);
   weigh(view, *scene);
   judge(view, *scene);
   return sketches_;
@@ -117,14 +111,15 @@ bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
 void PlaceBelief::prefetch(const SceneView& view) noexcept {
   const PlaceOrder& order = view.map->order();
   for (const CandidateProposals::Alike& found : view.seen->found()) {
-    if (found.row + apart >= view.rows) continue;
-    view.map->rows().prefetch_sketches(order.slot(found.row + apart), 1);
+    if (found.row + contrast_apart >= view.rows) continue;
+    view.map->rows().prefetch_sketches(order.slot(found.row + contrast_apart), 1);
   }
 }
 
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
 void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) noexcept {
   moved_count_ = 0;
+  ended_ = {};
   std::array<std::size_t, 3> next{};
   while (true) {
     std::size_t row = static_cast<std::size_t>(-1);
@@ -139,9 +134,13 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
     for (std::size_t by = 0; by < kernel.size(); ++by) {
       if (next[by] == count_ || rows_[next[by]].row + by != row) continue;
       const std::size_t from = next[by]++;
-      if (order.apart(rows_[from].row, row) != by) continue;
-      reached = true;
       const double part = kernel[by] * rows_[from].mass;
+      if (order.apart(rows_[from].row, row) != by) {
+        ended_.mass += part;
+        if (part > ended_.most) ended_ = {ended_.mass, part, from};
+        continue;
+      }
+      reached = true;
       if (part > best) {
         best = part;
         likeliest = from;
@@ -189,6 +188,28 @@ void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
   }
 }
 
+/// Where the rows of a session end, belief goes on with other visits of the place, and with it how
+/// the robot came there.
+void PlaceBelief::hand_over(const PlaceMap& map) noexcept {
+  if (ended_.mass <= 0.0) return;
+  const std::size_t end = rows_[ended_.from].row;
+  const auto goes_on = [&](const Moved& moved) {
+    return map.same_place(moved.row, end) && map.order().apart(moved.row, end) > PlaceMap::beside;
+  };
+  const std::span<Moved> all = moved_.first(moved_count_);
+  const auto count = std::ranges::count_if(all, goes_on);
+  if (count == 0) return;
+  const double part = ended_.mass / static_cast<double>(count);
+  for (Moved& moved : all) {
+    if (!goes_on(moved)) continue;
+    if (moved.mass < part) {
+      moved.share = 1.0;
+      moved.parent = static_cast<BeliefTraces::Index>(ended_.from);
+    }
+    moved.mass += part;
+  }
+}
+
 /// Makes a hypothesis of what has moved.
 void PlaceBelief::take_on(Hypothesis& at, const Moved& moved) const noexcept {
   at = moved.parent == BeliefTraces::none ? Hypothesis{} : rows_[moved.parent];
@@ -203,40 +224,20 @@ void PlaceBelief::take_on(Hypothesis& at, const Moved& moved) const noexcept {
 
 void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const PlaceOrder& order = view.map->order();
-  const DescriptorRows& queries = view.queries->rows();
-  // Share of bits in which a query and a row differ.
-  const auto share = [&](std::size_t query, std::size_t row) {
-    ++sketches_;
-    return view.map->rows().look_closely(queries, query, order.slot(row)) /
-           DescriptorRows::close_bits;
-  };
-  const bool has_before = view.newest >= view.oldest + apart;
-  const std::size_t newest = view.queries->row_of(view.newest);
-  const std::size_t before = has_before ? view.queries->row_of(view.newest - apart) : newest;
+  const QueryHistory& queries = *view.queries;
+  const CloseSketch newest = queries.rows().close_sketch(queries.row_of(view.newest));
+  std::optional<CloseSketch> before;
+  if (view.newest >= view.oldest + contrast_apart) {
+    before = queries.rows().close_sketch(queries.row_of(view.newest - contrast_apart));
+  }
   std::array<double, most> gains;
   const double w = scene.novelty;
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
     Hypothesis& at = next_[i];
     take_on(at, moved_[i]);
-    const double here = share(newest, at.row);
-    double contrast = 0.0;
-    if (has_before) {
-      const CandidateRun session = order.around(at.row);
-      double around = 2.0 * share(before, at.row);
-      double weight = 2.0;
-      if (at.row >= session.first + apart) {
-        around += share(newest, at.row - apart);
-        weight += 1.0;
-      }
-      if (at.row + apart < std::min(view.rows, session.last)) {
-        around += share(newest, at.row + apart);
-        weight += 1.0;
-      }
-      contrast = (around / weight - here) / scene.deviation;
-    }
-    const double z = (scene.mean - here) / scene.deviation;
-    const double l = std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0);
+    const auto [l, contrast] =
+        gain_of(scene, *view.map, view.rows, newest, before, at.row, sketches_);
     gains[i] = l;
     at.told = w * l;
     at.mass *= exponential(at.told);
@@ -251,7 +252,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
   new_place_ /= sum;
-  traces_.next(w);
+  traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
     traces_.set(i, rows_[i].row, rows_[i].parent, rows_[i].told);
   }
@@ -320,7 +321,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
   const auto index = static_cast<std::size_t>(top - rows.begin());
   if (on_map) know_better(*view.map, index);
   wrong_.take({WrongRows::Row{top->row, top->wrong}, other, on_map,
-               scene.novelty > least_novelty ? scene.novelty : 0.0});
+               scene.novelty > Scene::least_novelty ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   const double varies = has_earlier_drives(view) ? least_variance : least_variance_of_new_places;
@@ -371,8 +372,9 @@ double PlaceBelief::remember(double odds) noexcept {
 }
 
 void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept {
+  first_frames_.repeat(frames);
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
-    traces_.next(0.0);
+    traces_.next(0.0, 0.0);
     wrong_.take({});
     const std::size_t before = std::exchange(count_, 0);
     for (std::size_t i = 0; i < before; ++i) {
@@ -407,6 +409,7 @@ void PlaceBelief::restart() noexcept {
   new_place_ = 1.0;
   likeliest_.reset();
   traces_.restart();
+  first_frames_.restart();
   wrong_.settle();
 }
 

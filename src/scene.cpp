@@ -102,4 +102,32 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
                logarithm(exponentials / n) + above, news.change, news.novelty};
 }
 
+RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, CloseSketch frame,
+                const std::optional<CloseSketch>& before, std::size_t row,
+                std::size_t& sketches) noexcept {
+  const PlaceOrder& order = map.order();
+  const auto share = [&](CloseSketch sketch, std::size_t there) {
+    ++sketches;
+    return map.rows().look_closely(sketch, order.slot(there)) / DescriptorRows::close_bits;
+  };
+  const double here = share(frame, row);
+  double contrast = 0.0;
+  if (before) {
+    const CandidateRun session = order.around(row);
+    double around = 2.0 * share(*before, row);
+    double weight = 2.0;
+    if (row >= session.first + contrast_apart) {
+      around += share(frame, row - contrast_apart);
+      weight += 1.0;
+    }
+    if (row + contrast_apart < std::min(rows, session.last)) {
+      around += share(frame, row + contrast_apart);
+      weight += 1.0;
+    }
+    contrast = (around / weight - here) / scene.deviation;
+  }
+  const double z = (scene.mean - here) / scene.deviation;
+  return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast};
+}
+
 }  // namespace seqloop

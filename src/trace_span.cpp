@@ -16,28 +16,35 @@ struct Chances {
 };
 constexpr Chances usual_chances{0.01, 0.001};
 
-/// Where the pictures go on from one to the next, a frame that is as new as can be is a cut: the
-/// robot was carried away, or the camera was covered. Drives whose frames are all new show none.
+/// Where the pictures go on from one to the next, a frame that has changed as much as can be is a
+/// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
+/// none.
 /// @param least half of what is new of this drive's frames
-Chances chances_of(double novelty, double least) {
-  constexpr double all_new = 0.6;
+Chances chances_of(double change, double least) {
+  constexpr double all = 0.6;
   constexpr double goes_on = 0.15;
-  const bool cut = novelty > all_new && least < goes_on;
+  const bool cut = change > all && least < goes_on;
   return cut ? Chances{0.9, 0.95} : usual_chances;
 }
 
-/// What a frame has to gain, by novelty, where the belief of the time did not agree with the trace
-/// yet: nearly as much as the frames since have gained.
-/// @param agreed the frames since
-double usual_before(std::span<const BeliefTraces::Step> agreed, double usual, double least) {
+/// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
+/// there are none.
+double gain_by_novelty(std::span<const BeliefTraces::Step> agreed, double least) {
   double gained = 0.0;
   double novelty = 0.0;
   for (const BeliefTraces::Step& step : agreed) {
     gained += step.gain;
     novelty += std::max(step.novelty, least);
   }
-  constexpr double nearly = 0.9;
-  return novelty > 0.0 ? std::max(usual, nearly * gained / novelty) : usual;
+  return novelty > 0.0 ? gained / novelty : 0.0;
+}
+
+/// How much likelier a frame is where the trace was left than where it has not begun: usual is what
+/// the best of many wrong rows gain, but where the trace leads on is one row, of which half as much
+/// is expected. About e^-(half of it), without the time that exponentials take.
+double likelier_when_gone(double usual, double novelty) {
+  constexpr double half = 0.5;
+  return 1.0 / (1.0 + half * usual * novelty);
 }
 
 /// Whether a sum of what is weighed leaves what can be counted. It is brought back to 1 then only:
@@ -56,10 +63,12 @@ struct Backward {
   Pair on{1.0, usual_chances.ends};
   Pair gone{1.0, 1.0};
 
-  /// To the frame before. @param likelier of the frame that it comes from
-  void step(double likelier, const Chances& chances) {
+  /// To the frame before. @param likelier, gone_likelier as `Forward` has them, of the frame that
+  /// it comes from
+  void step(double likelier, double gone_likelier, const Chances& chances) {
     for (std::size_t i = 0; i < 2; ++i) {
       const double stays = likelier * on[i];
+      gone[i] *= gone_likelier;
       fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * stays;
       on[i] = (1.0 - chances.ends) * stays + chances.ends * gone[i];
       const double sum = fresh[i] + on[i] + gone[i];
@@ -77,17 +86,20 @@ TraceSpan::TraceSpan(Arena& arena, std::size_t most)
     : forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, double usual,
-                           double least) noexcept {
-  const double early = usual_before(trace.first(agreed), usual, least);
+void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed,
+                           std::size_t born, double usual, double least) noexcept {
+  constexpr double nearly = 0.9;
+  constexpr double half = 0.5;
+  const double gained = gain_by_novelty(trace.first(agreed), least);
   for (std::size_t back = 0; back < trace.size(); ++back) {
     BeliefTraces::Step& step = trace[back];
-    step.gain -= (back < agreed ? usual : early) * std::max(step.novelty, least);
+    const double share = back < agreed ? 0.0 : back < born ? nearly : half;
+    step.gain -= std::max(usual, share * gained) * std::max(step.novelty, least);
   }
 }
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
-                                               double before, double least,
+                                               double before, double usual, double least,
                                                std::size_t asked) noexcept {
   double fresh = 1.0 - before;
   double on = 1.0;
@@ -95,19 +107,21 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain);
-    const Chances chances = chances_of(step.novelty, least);
+    const Chances chances = chances_of(step.change, least);
     if (back + 1 < trace.size()) {
       gone += on * chances.ends;
       on = on * (1.0 - chances.ends) + fresh * chances.begins;
       fresh *= 1.0 - chances.begins;
     }
     on *= likelier;
+    const double gone_likelier = likelier_when_gone(usual, step.novelty);
+    gone *= gone_likelier;
     if (const double sum = fresh + on + gone; is_far(sum)) {
       fresh /= sum;
       on /= sum;
       gone /= sum;
     }
-    forward_[back] = {fresh, on, gone, likelier};
+    forward_[back] = {fresh, on, gone, likelier, gone_likelier};
   }
   Backward after;
   for (std::size_t back = 0; back < asked; ++back) {
@@ -118,7 +132,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       share[i] = is / (is + here.fresh * after.fresh[i] + here.gone * after.gone[i]);
     }
     on_[back] = {share[0], share[1]};
-    after.step(here.likelier, chances_of(trace[back].novelty, least));
+    after.step(here.likelier, here.gone_likelier, chances_of(trace[back].change, least));
   }
   return on_.first(asked);
 }

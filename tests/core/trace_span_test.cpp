@@ -24,13 +24,17 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     const double before = round == 0 ? 0.0 : share();
     const double usual = share();
     std::vector<BeliefTraces::Step> trace;
-    for (std::size_t i = 0; i < frames; ++i) trace.push_back({i, 4.0 * share() - 2.0, share()});
+    for (std::size_t i = 0; i < frames; ++i) {
+      trace.push_back({i, 4.0 * share() - 2.0, share(), share()});
+    }
     const std::size_t asked = 1 + random() % frames;
     const std::size_t agreed = random() % (frames + 1);
-    // Frames are counted from the oldest. One that is all new is a cut in every other drive.
+    const std::size_t born = agreed + random() % (frames + 1 - agreed);
+    // Frames are counted from the oldest. One that has changed wholly is a cut in every other
+    // drive.
     const double least = round % 2 == 0 ? 0.1 : 0.3;
     const auto step_of = [&](std::size_t i) { return trace[frames - 1 - i]; };
-    const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).novelty > 0.6; };
+    const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).change > 0.6; };
     const auto begins = [&](std::size_t i) { return is_cut(i) ? 0.9 : 0.01; };
     const auto ends = [&](std::size_t i) { return is_cut(i) ? 0.95 : 0.001; };
     double gained = 0.0;
@@ -39,10 +43,12 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
       gained += step_of(i).gain;
       novelty += std::max(step_of(i).novelty, least);
     }
-    const double early = agreed == 0 ? usual : std::max(usual, 0.9 * gained / novelty);
+    const auto at_least = [&](double part) {
+      return agreed == 0 ? usual : std::max(usual, part * gained / novelty);
+    };
     std::vector<BeliefTraces::Step> less = trace;
-    TraceSpan::take_usual(less, agreed, usual, least);
-    const auto found = span.find(less, before, least, asked);
+    TraceSpan::take_usual(less, agreed, born, usual, least);
+    const auto found = span.find(less, before, usual, least, asked);
     ASSERT_EQ(found.size(), asked);
     // On the trace in [first, last).
     std::vector<double> still(frames);
@@ -52,9 +58,15 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     const auto take = [&](std::size_t first, std::size_t last, double chance) {
       for (std::size_t i = first; i < last; ++i) {
         const auto step = step_of(i);
-        const double elsewhere = i < frames - agreed ? early : usual;
+        const double elsewhere = i < frames - born     ? at_least(0.5)
+                                 : i < frames - agreed ? at_least(0.9)
+                                                       : usual;
         chance *= std::exp(step.gain - elsewhere * std::max(step.novelty, least));
         if (i > first) chance *= 1.0 - ends(i);
+      }
+      // Half as much is usual where it was left.
+      for (std::size_t i = last; i < frames; ++i) {
+        chance /= 1.0 + 0.5 * usual * step_of(i).novelty;
       }
       // That it ends with the frame to come.
       const double leaves = chance * (last == frames ? 0.001 : ends(last));
@@ -89,11 +101,11 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
   for (std::size_t i = 0; i < 30; ++i) {
     const bool cut = i == 9 || i == 19;
     const bool on = i > 9 && i <= 19;
-    trace.push_back({0, on ? 0.3 : -0.1, cut ? 0.615 : 0.1});
+    trace.push_back({0, on ? 0.3 : -0.1, 0.1, cut ? 0.615 : 0.1});
   }
   for (const double least : {0.05, 0.25}) {
     SCOPED_TRACE(least);
-    const auto on = span.find(trace, 0.0, least, trace.size());
+    const auto on = span.find(trace, 0.0, 0.0, least, trace.size());
     const bool sees_cuts = least < 0.15;
     EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
@@ -107,15 +119,46 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
   TraceSpan span(memory.arena, 40);
   for (const double gain : {0.15, 0.95}) {
     SCOPED_TRACE(gain);
-    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5});
-    trace.resize(30, {0, gain, 0.5});
+    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
+    trace.resize(30, {0, gain, 0.5, 0.5});
+    constexpr double usual = 0.1;
     constexpr double least = 0.25;
     std::vector<BeliefTraces::Step> all = trace;
-    TraceSpan::take_usual(all, 30, 0.1, least);
-    EXPECT_GT(span.find(all, 0.0, least, 30)[29].still, 0.5);
-    TraceSpan::take_usual(trace, 20, 0.1, least);
-    EXPECT_EQ(span.find(trace, 0.0, least, 30)[25].still > 0.5, gain > 0.5);
-    EXPECT_GT(span.find(trace, 0.0, least, 30)[15].still, 0.99);
+    TraceSpan::take_usual(all, 30, 30, usual, least);
+    EXPECT_GT(span.find(all, 0.0, usual, least, 30)[29].still, 0.5);
+    TraceSpan::take_usual(trace, 20, 30, usual, least);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 30)[25].still > 0.5, gain > 0.5);
+    EXPECT_GT(span.find(trace, 0.0, usual, least, 30)[15].still, 0.99);
+  }
+}
+
+TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 40);
+  for (const double gain : {-0.2, 0.6}) {
+    SCOPED_TRACE(gain);
+    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
+    trace.resize(30, {0, gain, 0.5, 0.5});
+    constexpr double usual = 0.1;
+    constexpr double least = 0.25;
+    TraceSpan::take_usual(trace, 20, 20, usual, least);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 30)[29].still > 0.5, gain > 0.0);
+  }
+}
+
+/// What is usual is what the best of many rows gain. Where the trace leads on after it was left is
+/// one row, so less speaks against having left it late.
+TEST(TraceSpan, LastsWhereAFrameGainsLessThanIsUsualButMoreThanOneRowDoes) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 60);
+  constexpr double usual = 1.0;
+  constexpr double least = 0.1;
+  for (const double gain : {-0.15, 0.05}) {
+    SCOPED_TRACE(gain);
+    std::vector<BeliefTraces::Step> trace(20, {0, gain, 0.5, 0.5});
+    trace.resize(50, {0, 1.0, 0.5, 0.5});
+    TraceSpan::take_usual(trace, 50, 50, usual, least);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 50)[0].still > 0.5, gain > 0.0);
   }
 }
 
@@ -123,8 +166,8 @@ TEST(TraceSpan, NoTraceIsTooLong) {
   TestArena memory;
   TraceSpan span(memory.arena, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
-    const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.3, trace.size())) {
+    const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5, 0.5});
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
       EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
       EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
     }

@@ -29,10 +29,11 @@ class BeliefTraces {
     std::size_t row;
     double gain;     ///< ln of how much likelier the frame is there than somewhere new
     double novelty;  ///< of the frame, 0 .. 1
+    double change;   ///< of the frame, as `Scene` has it
   };
 
   /// Begins the next frame; `set` fills it in.
-  void next(double novelty) noexcept;
+  void next(double novelty, double change) noexcept;
 
   /// A hypothesis of the newest frame.
   /// @param parent its index at the frame before, or none
@@ -65,6 +66,7 @@ class BeliefTraces {
   std::span<Index> parents_;    // [depth, width]
   std::span<Traced> steps_;     // [depth, width]
   std::span<float> novelties_;  // [depth]
+  std::span<float> changes_;    // [depth]
 };
 
 }  // namespace seqloop

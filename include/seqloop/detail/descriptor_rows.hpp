@@ -112,8 +112,17 @@ class DescriptorRows {
   /// Differing bits of the close words of two sketches. @return 0 .. 64 close_words
   [[nodiscard]] std::uint32_t look_closely(const DescriptorRows& queries, std::size_t query,
                                            std::size_t row) const noexcept {
-    return kernels_->hamming(&queries.sketches_[query * words_], &sketches_[row * words_],
-                             close_words);
+    return look_closely(queries.close_sketch(query), row);
+  }
+  [[nodiscard]] std::uint32_t look_closely(std::span<const std::uint64_t, close_words> sketch,
+                                           std::size_t row) const noexcept {
+    return kernels_->hamming(sketch.data(), &sketches_[row * words_], close_words);
+  }
+
+  /// The close words of a row's sketch.
+  [[nodiscard]] std::span<const std::uint64_t, close_words> close_sketch(
+      std::size_t row) const noexcept {
+    return std::span<const std::uint64_t, close_words>(&sketches_[row * words_], close_words);
   }
 
   /// Has the processor fetch the sketches of consecutive rows, which will be looked at soon.

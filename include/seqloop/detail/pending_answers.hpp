@@ -45,10 +45,11 @@ class PendingAnswers {
 
   /// Takes in what is believed at the newest frame.
   /// @param oldest frame that belongs together with it
-  /// Work: a pass over the frames that wait, and as many exponentials as patience has frames.
-  /// Allocates: never.
-  void believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
-               std::uint64_t oldest) noexcept;
+  /// @return pairs of sketches compared
+  /// Work: a pass over the frames that wait, as many exponentials as patience has frames, and
+  /// `FirstFrames::most_sketches`. Allocates: never.
+  std::size_t believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
+                      std::uint64_t oldest) noexcept;
 
   /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
@@ -86,6 +87,7 @@ class PendingAnswers {
     bool readable;
     bool believed;          // whether it lies on a trace
     bool left;              // by the trace of the newest frame that was looked back from
+    bool before_birth;      // of the trace, which was followed back
     std::size_t row;        // there
     double right;           // that the trace is right: the most that was ever said
     TraceSpan::On on;       // that the frame lies on it

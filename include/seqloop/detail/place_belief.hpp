@@ -10,6 +10,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/belief_traces.hpp"
 #include "seqloop/detail/evidence.hpp"
+#include "seqloop/detail/first_frames.hpp"
 #include "seqloop/detail/scene.hpp"
 #include "seqloop/detail/wrong_rows.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -27,7 +28,8 @@ class PlaceBelief {
   static constexpr std::size_t most = 64;
 
   /// Pairs of sketches that one frame compares.
-  static constexpr std::size_t most_sketches = 4 * most + SceneGauge::most_sketches;
+  static constexpr std::size_t most_sketches =
+      most_sketches_of_gain * most + SceneGauge::most_sketches + FirstFrames::most_sketches;
 
   /// Frames before the newest one that are looked back on.
   static constexpr std::size_t reach = SceneGauge::reach;
@@ -76,6 +78,14 @@ class PlaceBelief {
     return traces_.trace(index, out);
   }
 
+  /// Follows a trace that began among the drive's first frames back to its first one: as
+  /// `FirstFrames` does.
+  std::size_t follow_back(const PlaceMap& map, std::span<BeliefTraces::Step> trace,
+                          std::size_t count, std::uint64_t newest,
+                          std::size_t& sketches) const noexcept {
+    return first_frames_.follow(map, trace, count, newest, sketches);
+  }
+
   /// What the best wrong rows gain, by novelty; 0 or more.
   [[nodiscard]] double usual_gain() const noexcept;
 
@@ -104,11 +114,19 @@ class PlaceBelief {
     BeliefTraces::Index parent;
   };
 
+  /// What has gone beyond the rows of its session.
+  struct Ended {
+    double mass = 0.0;
+    double most = 0.0;     // of it, from one hypothesis
+    std::size_t from = 0;  // this one
+  };
+
   [[nodiscard]] bool has_earlier_drives(const SceneView& view) const noexcept;
   static void prefetch(const SceneView& view) noexcept;
   void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
+  void hand_over(const PlaceMap& map) noexcept;
   void take_on(Hypothesis& at, const Moved& moved) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
@@ -124,11 +142,13 @@ class PlaceBelief {
   double novelty_ = 0.0;  // of the newest frame
   std::size_t count_ = 0;
   std::size_t moved_count_ = 0;
+  Ended ended_;
   std::optional<Likeliest> likeliest_;
   std::span<Hypothesis> rows_;  // [most] in order of row
   std::span<Hypothesis> next_;  // [most] of the frame that is being weighed
   std::span<Moved> moved_;      // [3 most]
   SceneGauge gauge_;
+  FirstFrames first_frames_;
   BeliefTraces traces_;
 };
 

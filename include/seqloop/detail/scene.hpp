@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/candidate_proposals.hpp"
+#include "seqloop/detail/descriptor_rows.hpp"
 #include "seqloop/detail/query_history.hpp"
 #include "seqloop/place_map.hpp"
 
@@ -26,12 +28,51 @@ struct SceneView {
 /// How unlike the newest frame and the rows of the map usually are, as shares of differing bits,
 /// and what the frame tells that those before it did not.
 struct Scene {
+  /// A frame that is less new than that tells hardly anything.
+  static constexpr double least_novelty = 0.02;
+
   double mean;
   double deviation;
   double bias;     ///< about what the best of the rows scanned reaches by chance
   double change;   ///< from the frame before, 0 .. 1
   double novelty;  ///< as much of it as leads away from what was seen, 0 .. change
+
+  /// Chances that rows go on by 0, 1 or 2 with this frame: a robot that stands may as well stay.
+  [[nodiscard]] std::span<const double, 3> moves() const noexcept {
+    static constexpr std::array moving{0.06, 0.88, 0.06};
+    static constexpr std::array standing{0.45, 0.40, 0.15};
+    return novelty > least_novelty ? moving : standing;
+  }
+
+  /// How much more alike than rows usually are, in their deviations.
+  /// @param differing bits of the close words of two sketches
+  [[nodiscard]] double likeness(std::uint32_t differing) const noexcept {
+    return (mean - differing / DescriptorRows::close_bits) / deviation;
+  }
 };
+
+/// The close words of a frame's sketch.
+using CloseSketch = std::span<const std::uint64_t, DescriptorRows::close_words>;
+
+/// What a frame says for a row of the map.
+struct RowGain {
+  double gain;      ///< by novelty, ln of how much likelier the frame is there, -1.5 .. 3
+  double contrast;  ///< how much more alike than the frames and rows that lie a little off; 0 where
+                    ///< there is no such frame
+};
+
+/// Frames and rows that lie so far off are compared with.
+inline constexpr std::size_t contrast_apart = 8;
+
+/// Pairs of sketches that `gain_of` compares at most.
+inline constexpr std::size_t most_sketches_of_gain = 4;
+
+/// @param rows   of the map that may be searched
+/// @param before the frame `contrast_apart` before it; none: there is none
+/// @param sketches grows by the pairs compared
+[[nodiscard]] RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows,
+                              CloseSketch frame, const std::optional<CloseSketch>& before,
+                              std::size_t row, std::size_t& sketches) noexcept;
 
 /// Makes the scene of each frame. Source: src/README.md, sections 6.1 and 6.2.
 class SceneGauge {

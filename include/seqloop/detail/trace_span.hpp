@@ -29,19 +29,22 @@ class TraceSpan {
   ///               0 to all. Before them the robot may have been elsewhere, and where roads meet,
   ///               the frames that lead there look alike: such a frame has to gain nearly as much
   ///               as those since
+  /// @param born   frames, from the newest on, since the trace was born, `agreed` to all. Before
+  ///               them it leads on through the drive's first frames, where robots seldom come onto
+  ///               the map: such a frame has to gain half as much
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
-  static void take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, double usual,
-                         double least) noexcept;
+  static void take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
+                         double usual, double least) noexcept;
 
   /// @param trace  the newest frame first; at most `most`. Its gains are less what is usual
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
-  /// @param least  as `take_usual` has it
+  /// @param usual  as `take_usual` has it, and `least`
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
   /// @return [asked] frame by frame as the trace; until the next call
   /// Work: as many exponentials as the trace has frames. Allocates: never.
-  std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double least,
-                           std::size_t asked) noexcept;
+  std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
+                           double least, std::size_t asked) noexcept;
 
  private:
   /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.
@@ -49,7 +52,8 @@ class TraceSpan {
     double fresh;
     double on;
     double gone;
-    double likelier;  // the frame, on the trace than elsewhere
+    double likelier;       // the frame, on the trace than before it
+    double gone_likelier;  // the frame, after the trace than before it
   };
 
   std::span<Forward> forward_;  // [most]

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "seqloop/detail/first_frames.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "seqloop/detail/portable_math.hpp"
+
+namespace seqloop {
+
+FirstFrames::FirstFrames(Arena& arena, bool used)
+    : scenes_(arena.take<Scene>("scenes of the first frames", used ? most : 0)),
+      sketches_(
+          arena.take<std::uint64_t>("sketches of the first frames", used ? most * words : 0)) {}
+
+void FirstFrames::take(const SceneView& view, const Scene& scene) noexcept {
+  if (count_ == 0) first_ = view.newest;
+  if (count_ == most || view.newest != first_ + count_) return;
+  const QueryHistory& queries = *view.queries;
+  std::ranges::copy(queries.rows().close_sketch(queries.row_of(view.newest)),
+                    sketches_.subspan(count_ * words).begin());
+  scenes_[count_++] = scene;
+}
+
+void FirstFrames::repeat(std::uint64_t frames) noexcept {
+  for (; frames > 0 && count_ > 0 && count_ < most; --frames, ++count_) {
+    std::ranges::copy(sketches_.subspan((count_ - 1) * words, words),
+                      sketches_.subspan(count_ * words).begin());
+    scenes_[count_] = scenes_[count_ - 1];
+    scenes_[count_].novelty = scenes_[count_].change = 0.0;
+  }
+}
+
+std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Step> trace,
+                                std::size_t count, std::uint64_t newest,
+                                std::size_t& sketches) const noexcept {
+  const std::uint64_t began = newest - (count - 1);
+  if (count_ == 0 || began <= first_ || began > first_ + count_) return count;
+  auto frame = static_cast<std::size_t>(began - first_);
+  if (count + frame > trace.size()) return count;
+  const PlaceOrder& order = map.order();
+  std::size_t row = trace[count - 1].row;
+  const CandidateRun session = order.around(row);
+  std::size_t at = count;
+  while (frame-- > 0) {
+    const Scene& scene = scenes_[frame];
+    std::optional<CloseSketch> before;
+    if (frame >= contrast_apart) before = sketch(frame - contrast_apart);
+    double best = 0.0;
+    std::size_t from = row;
+    for (std::size_t by = 0; by < scene.moves().size() && row >= session.first + by; ++by) {
+      ++sketches;
+      const std::uint32_t bits = map.rows().look_closely(sketch(frame), order.slot(row - by));
+      const double likely = scene.moves()[by] * exponential(scene.likeness(bits));
+      if (likely <= best) continue;
+      best = likely;
+      from = row - by;
+    }
+    row = from;
+    const double gain = gain_of(scene, map, map.size(), sketch(frame), before, row, sketches).gain;
+    trace[at++] = {row, scene.novelty * gain, scene.novelty, scene.change};
+  }
+  return at;
+}
+
+}  // namespace seqloop
