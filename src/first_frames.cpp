@@ -7,6 +7,13 @@
 #include "seqloop/detail/portable_math.hpp"
 
 namespace seqloop {
+namespace {
+
+// Moving frames that a trace may stay on the first row of a session for. A robot that would have to
+// stay longer has come onto the map from before it.
+constexpr std::size_t most_stays = 2;
+
+}  // namespace
 
 FirstFrames::FirstFrames(Arena& arena, bool used)
     : scenes_(arena.take<Scene>("scenes of the first frames", used ? most : 0)),
@@ -42,8 +49,11 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
   std::size_t row = trace[count - 1].row;
   const CandidateRun session = order.around(row);
   std::size_t at = count;
+  std::size_t stays = 0;
   while (frame-- > 0) {
     const Scene& scene = scenes_[frame];
+    const bool stays_at_first = row == session.first && scene.novelty > Scene::least_novelty;
+    if (stays_at_first && ++stays > most_stays) return count;
     std::optional<CloseSketch> before;
     if (frame >= contrast_apart) before = sketch(frame - contrast_apart);
     double best = 0.0;

@@ -148,6 +148,17 @@ TEST(FirstFrames, LeaveAloneATraceThatHasNoRoom) {
   EXPECT_EQ(drive.first.follow(drive.seen.map, trace, count, frames + 4, sketches), count + 7);
 }
 
+TEST(FirstFrames, DoNotFollowARobotThatCameFromBeforeTheMap) {
+  std::size_t sketches = 0;
+  constexpr std::size_t all = frames + 5;
+  for (const std::size_t before : {0U, 2U, 3U, 9U}) {
+    SCOPED_TRACE(before);
+    FirstOfADrive drive(0);
+    // The frame `before` is at the first row.
+    EXPECT_EQ(drive.follow(15, 15 - before, sketches), before <= 2 ? all : all - 15);
+  }
+}
+
 TEST(FirstFrames, CompareNoMoreSketchesThanTheySay) {
   FirstOfADrive drive(60);
   for (std::size_t began = 0; began <= frames + 3; ++began) {

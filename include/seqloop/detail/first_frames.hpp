@@ -38,12 +38,12 @@ class FirstFrames {
 
   /// Follows a trace that began with a later frame back to the first one, row by row to the most
   /// alike of those that it may have come from.
-  /// @param trace  the newest frame first; written from `count` on
+  /// @param trace  the newest frame first; undefined from `count` on, or followed
   /// @param count  frames of it, from the newest on; at least 1
   /// @param newest frame
   /// @param sketches grows by the pairs compared
   /// @return frames of it now: `count` if it did not begin with a frame that follows one of those
-  ///         that are kept, or `trace` has no room
+  ///         that are kept, `trace` has no room, or the robot came from before the session
   /// Work: `most_sketches`. Allocates: never.
   std::size_t follow(const PlaceMap& map, std::span<BeliefTraces::Step> trace, std::size_t count,
                      std::uint64_t newest, std::size_t& sketches) const noexcept;
