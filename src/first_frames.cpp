@@ -21,8 +21,9 @@ FirstFrames::FirstFrames(Arena& arena, bool used)
           arena.take<std::uint64_t>("sketches of the first frames", used ? most * words : 0)) {}
 
 void FirstFrames::take(const SceneView& view, const Scene& scene) noexcept {
-  if (count_ == 0) first_ = view.newest;
-  if (count_ == most || view.newest != first_ + count_) return;
+  if (count_ == most || view.newest != view.oldest + count_) return;
+  first_ = view.oldest;
+  rows_ = view.rows;
   const QueryHistory& queries = *view.queries;
   std::ranges::copy(queries.rows().close_sketch(queries.row_of(view.newest)),
                     sketches_.subspan(count_ * words).begin());
@@ -44,13 +45,12 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
   const std::uint64_t began = newest - (count - 1);
   if (count_ == 0 || began <= first_ || began > first_ + count_) return count;
   auto frame = static_cast<std::size_t>(began - first_);
-  if (count + frame > trace.size()) return count;
   const PlaceOrder& order = map.order();
   std::size_t row = trace[count - 1].row;
   const CandidateRun session = order.around(row);
   std::size_t at = count;
   std::size_t stays = 0;
-  while (frame-- > 0) {
+  while (frame-- > 0 && at < trace.size()) {
     const Scene& scene = scenes_[frame];
     const bool stays_at_first = row == session.first && scene.novelty > Scene::least_novelty;
     if (stays_at_first && ++stays > most_stays) return count;
@@ -67,7 +67,7 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
       from = row - by;
     }
     row = from;
-    const double gain = gain_of(scene, map, map.size(), sketch(frame), before, row, sketches).gain;
+    const double gain = gain_of(scene, map, rows_, sketch(frame), before, row, sketches).gain;
     trace[at++] = {row, scene.novelty * gain, scene.novelty, scene.change};
   }
   return at;

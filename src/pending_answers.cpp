@@ -24,7 +24,7 @@ constexpr std::size_t own = 6;
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
 /// section 6.6.
 double trace_is_right(double best) {
-  return logistic(std::min(1.5 * best - 1.0, 2.75 * best - 5.66));
+  return logistic(std::min(1.5 * best - 0.6, 2.75 * best - 5.05));
 }
 
 }  // namespace
@@ -101,8 +101,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (frame.waits && frame.frame == newest - back) {
-      look_back(map.order(), frame, trace[back].row, right, on[back], back);
-      frame.before_birth = back >= born;
+      look_back(map.order(), frame, {trace[back].row, right, on[back], back, back >= born});
     }
   }
   return sketches;
@@ -131,8 +130,9 @@ std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, st
 }
 
 /// Takes in that a trace has come through a frame.
-void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row,
-                               double right, const TraceSpan::On& on, std::uint64_t lag) noexcept {
+void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
+                               const LookedBack& back) noexcept {
+  const auto& [row, right, on, lag, before_birth] = back;
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
@@ -146,6 +146,7 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting, std::s
   waiting.on = on;
   waiting.lag = lag;
   waiting.row = row;
+  waiting.before_birth = before_birth;
   waiting.left = false;
   waiting.believed = true;
 }

@@ -86,7 +86,7 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   novelty_ = scene->novelty;
   if (has_earlier_drives(view)) first_frames_.take(view, *scene);
   move(view.map->order(), scene->moves());
-  double on = 0.0;
+  double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const bool begins = weighed_++ < FirstFrames::most;
   const double comes = (begins && has_earlier_drives(view) ? coming_at_first : coming) *
@@ -94,6 +94,7 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double left = leaving * novelty_;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
+  ended_.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
   give_birth(view, born / static_cast<double>(view.seen->scanned().bits.size()));
   hand_over(*view.map);
@@ -102,9 +103,11 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   return sketches_;
 }
 
-/// Whether the map holds other drives than the one that is being driven.
+/// Whether the map holds other drives than the one that is being driven, and enough of them to be
+/// believed.
 bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
-  return localises_ || view.map->order().sessions() > 1;
+  const PlaceOrder& order = view.map->order();
+  return localises_ || order.session(order.sessions() - 1).first >= SceneGauge::least_rows;
 }
 
 /// Has the processor fetch what weighing the rows found will read and their finding has not.
@@ -135,9 +138,10 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
       if (next[by] == count_ || rows_[next[by]].row + by != row) continue;
       const std::size_t from = next[by]++;
       const double part = kernel[by] * rows_[from].mass;
-      if (order.apart(rows_[from].row, row) != by) {
+      if (row >= order.size() || order.apart(rows_[from].row, row) != by) {
         ended_.mass += part;
-        if (part > ended_.most) ended_ = {ended_.mass, part, from};
+        if (part > ended_.most && rows_[from].row < order.size())
+          ended_ = {ended_.mass, part, from};
         continue;
       }
       reached = true;
@@ -189,20 +193,28 @@ void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
 }
 
 /// Where the rows of a session end, belief goes on with other visits of the place, and with it how
-/// the robot came there.
+/// the robot came there: one half in equal shares, for nobody knows which of the rows it is, the
+/// other half by what is believed of them already.
 void PlaceBelief::hand_over(const PlaceMap& map) noexcept {
-  if (ended_.mass <= 0.0) return;
+  if (ended_.most <= 0.0) return;
   const std::size_t end = rows_[ended_.from].row;
   const auto goes_on = [&](const Moved& moved) {
     return map.same_place(moved.row, end) && map.order().apart(moved.row, end) > PlaceMap::beside;
   };
   const std::span<Moved> all = moved_.first(moved_count_);
-  const auto count = std::ranges::count_if(all, goes_on);
-  if (count == 0) return;
-  const double part = ended_.mass / static_cast<double>(count);
+  double count = 0.0;
+  double sum = 0.0;
+  for (const Moved& moved : all) {
+    if (!goes_on(moved)) continue;
+    count += 1.0;
+    sum += moved.mass;
+  }
+  if (sum <= 0.0) return;
+  constexpr double half = 0.5;
   for (Moved& moved : all) {
     if (!goes_on(moved)) continue;
-    if (moved.mass < part) {
+    const double part = half * ended_.mass * (1.0 / count + moved.mass / sum);
+    if (part > moved.mass) {
       moved.share = 1.0;
       moved.parent = static_cast<BeliefTraces::Index>(ended_.from);
     }

@@ -11,9 +11,6 @@
 namespace seqloop {
 namespace {
 
-// Fewer rows than that tell nothing of how unlike places usually are.
-constexpr std::size_t least_rows = 20;
-
 constexpr double scanned_bits = DescriptorRows::scanned_words * 64.0;
 
 /// As `Scene` has them.

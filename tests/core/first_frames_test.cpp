@@ -142,18 +142,23 @@ TEST(FirstFrames, NothingIsFollowedBeyondThem) {
   EXPECT_EQ(sketches, 0U);
   drive.first.restart();
   EXPECT_EQ(drive.follow(7, 37, sketches), all - 7) << "there are none";
-  // A drive that is long under way when rows are first there to be searched has no first frames.
+  // A drive that is long under way when it is first looked at has none either.
+  const SceneView view{&drive.seen.queries,  &drive.seen.map, &drive.seen.proposals, frames + 4, 0,
+                       drive.seen.map.size()};
+  drive.first.take(view, drive.scenes.back());
+  EXPECT_EQ(drive.first.follow(drive.seen.map, drive.trace, 3, frames + 7, sketches), 3U);
   EXPECT_EQ(sketches, 0U);
 }
 
-TEST(FirstFrames, LeaveAloneATraceThatHasNoRoom) {
+TEST(FirstFrames, AreFollowedAsFarAsThereIsRoom) {
   std::size_t sketches = 0;
   FirstOfADrive drive(30);
   const std::size_t count = frames + 5 - 7;
-  std::vector<BeliefTraces::Step> trace(count + 6, {40, 1.0, 0.5, 0.5});
-  EXPECT_EQ(drive.first.follow(drive.seen.map, trace, count, frames + 4, sketches), count);
-  trace.push_back({});
-  EXPECT_EQ(drive.first.follow(drive.seen.map, trace, count, frames + 4, sketches), count + 7);
+  for (const std::size_t room : {0U, 6U, 7U, 8U}) {
+    std::vector<BeliefTraces::Step> trace(count + room, {40, 1.0, 0.5, 0.5});
+    EXPECT_EQ(drive.first.follow(drive.seen.map, trace, count, frames + 4, sketches),
+              count + std::min<std::size_t>(room, 7));
+  }
 }
 
 TEST(FirstFrames, DoNotFollowARobotThatCameFromBeforeTheMap) {

@@ -75,9 +75,14 @@ class NaiveBelief {
         w > 0.02 ? std::vector{0.06, 0.88, 0.06} : std::vector{0.45, 0.40, 0.15};
     std::map<std::size_t, Row> moved;
     std::map<std::size_t, double> largest;
+    double ended = 0.0;  // beyond the last row, and no other visit is known
     for (const auto& [row, old] : rows_) {
       for (std::size_t i = 0; i < by.size(); ++i) {
         const double part = by[i] * old.mass;
+        if (row + i >= view.map->size()) {
+          ended += part;
+          continue;
+        }
         Row& here = moved[row + i];
         const double mass = here.mass + part;
         // Of equals the one that moved least.
@@ -93,7 +98,7 @@ class NaiveBelief {
     std::ranges::sort(order);
     for (std::size_t i = 48; i < order.size(); ++i) moved.erase(order[i].second);
     // Leave and come.
-    double on = 0.0;
+    double on = ended;
     for (auto& [row, at] : moved) {
       on += at.mass;
       at.mass *= 1.0 - 0.01 * w;
@@ -103,7 +108,6 @@ class NaiveBelief {
                           std::min(1.0, static_cast<double>(view.rows) / 200.0);
     const double born = coming * std::min(1.0, 4.0 * w) * new_place;
     new_place += 0.01 * w * on - born;
-    std::erase_if(moved, [&](const auto& at) { return at.first >= view.map->size(); });
     for (const auto& found : view.seen->found()) {
       if (born <= 0.0) break;
       Row& at = moved[found.row];

@@ -29,8 +29,8 @@ class FirstFrames {
   /// The drive begins anew: nothing is kept.
   void restart() noexcept { count_ = 0; }
 
-  /// Takes the newest frame, if it is the first one or follows those that are kept, and there is
-  /// room.
+  /// Takes the newest frame, if it is the drive's first or follows those that are kept, and there
+  /// is room.
   void take(const SceneView& view, const Scene& scene) noexcept;
 
   /// Frames went by unseen: the scene stands still.
@@ -43,8 +43,9 @@ class FirstFrames {
   /// @param newest frame
   /// @param sketches grows by the pairs compared
   /// @return frames of it now: `count` if it did not begin with a frame that follows one of those
-  ///         that are kept, `trace` has no room, or the robot came from before the session
-  /// Work: `most_sketches`. Allocates: never.
+  ///         that are kept, or the robot came from before the session; never more than `trace` has
+  ///         room for
+  /// Work: `most_sketches`, three exponentials a frame. Allocates: never.
   std::size_t follow(const PlaceMap& map, std::span<BeliefTraces::Step> trace, std::size_t count,
                      std::uint64_t newest, std::size_t& sketches) const noexcept;
 
@@ -57,6 +58,7 @@ class FirstFrames {
 
   std::uint64_t first_ = 0;  // frame
   std::size_t count_ = 0;
+  std::size_t rows_ = 0;               // of the map that may be searched
   std::span<Scene> scenes_;            // [most]
   std::span<std::uint64_t> sketches_;  // [most, words]
 };

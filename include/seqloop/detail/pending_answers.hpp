@@ -46,8 +46,8 @@ class PendingAnswers {
   /// Takes in what is believed at the newest frame.
   /// @param oldest frame that belongs together with it
   /// @return pairs of sketches compared
-  /// Work: a pass over the frames that wait, as many exponentials as patience has frames, and
-  /// `FirstFrames::most_sketches`. Allocates: never.
+  /// Work: a pass over the frames that wait, as many exponentials as patience has frames, and that
+  /// of `FirstFrames::follow`. Allocates: never.
   std::size_t believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
                       std::uint64_t oldest) noexcept;
 
@@ -99,6 +99,15 @@ class PendingAnswers {
     Lead lead;              // that `margin` took the logarithm of last
   };
 
+  /// What a trace that came through a frame says of it.
+  struct LookedBack {
+    std::size_t row;
+    double right;       // that the trace is right
+    TraceSpan::On on;   // that the frame lies on it
+    std::uint64_t lag;  // frames that have come since
+    bool before_birth;  // of the trace, which was followed back
+  };
+
   /// A power of two, so that nothing is divided: a step asks for this many hundred times.
   [[nodiscard]] std::size_t slot_of(std::uint64_t frame) const noexcept {
     return static_cast<std::size_t>(frame) & (waiting_.size() - 1);
@@ -113,8 +122,7 @@ class PendingAnswers {
                    std::span<BeliefTraces::Step> trace) noexcept;
   [[nodiscard]] std::size_t agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
                                    std::span<const BeliefTraces::Step> trace) noexcept;
-  void look_back(const PlaceOrder& order, Waiting& waiting, std::size_t row, double right,
-                 const TraceSpan::On& on, std::uint64_t lag) noexcept;
+  void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
   [[nodiscard]] bool hardly_changes(const PlaceBelief& belief, std::uint64_t frame) noexcept;

@@ -117,7 +117,7 @@ class PlaceBelief {
   /// What has gone beyond the rows of its session.
   struct Ended {
     double mass = 0.0;
-    double most = 0.0;     // of it, from one hypothesis
+    double most = 0.0;     // of it, with one move of one hypothesis
     std::size_t from = 0;  // this one
   };
 

@@ -80,6 +80,9 @@ class SceneGauge {
   /// Frames before the newest one that are looked back on.
   static constexpr std::size_t reach = 20;
 
+  /// Fewer rows than that tell nothing of how unlike places usually are.
+  static constexpr std::size_t least_rows = 20;
+
   /// Pairs of sketches that one call compares at most.
   static constexpr std::size_t most_sketches = 2;
 

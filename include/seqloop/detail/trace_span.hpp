@@ -39,7 +39,8 @@ class TraceSpan {
 
   /// @param trace  the newest frame first; at most `most`. Its gains are less what is usual
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
-  /// @param usual  as `take_usual` has it, and `least`
+  /// @param usual  as `take_usual` has it
+  /// @param least  as `take_usual` has it
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
   /// @return [asked] frame by frame as the trace; until the next call
   /// Work: as many exponentials as the trace has frames. Allocates: never.
