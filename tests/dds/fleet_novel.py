@@ -18,6 +18,11 @@ from dds.fleet import Robot, drive, expect, loops, way  # noqa: E402
 LAP = 300
 
 
+def not_seen(robot: Robot) -> int:
+    """Frames that a busy machine dropped or lost: places that are copies of those beside them."""
+    return sum(map(int, re.search(r"(\d+) dropped; (\d+) lost", robot.said.read_text()).groups()))
+
+
 def main(seqloop: str, work: pathlib.Path) -> None:
     seen = way(LAP)
     three = numpy.concatenate([seen, seen, seen])
@@ -33,7 +38,9 @@ def main(seqloop: str, work: pathlib.Path) -> None:
     expect(bert.counted()[0] == anna.told(), "which bert knows")
     found = loops(of_bert, "anna")
     off = [(answer["frame"] - answer["session_frame"] + LAP // 2) % LAP - LAP // 2 for answer in found]
-    expect(len(found) > LAP and max(map(abs, off)) <= 5, f"and finds loops with: {len(found)}, off by {max(map(abs, off))} at most")
+    most = 5 + not_seen(anna) + not_seen(bert)
+    expect(len(found) > LAP and max(map(abs, off)) <= most,
+           f"and finds loops with: {len(found)}, off by {max(map(abs, off))} at most, of {most}")
     expect(len(loops(of_anna, "bert")) > LAP, "anna finds loops with bert, too")
 
 
