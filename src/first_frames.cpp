@@ -32,8 +32,7 @@ void FirstFrames::take(const SceneView& view, const Scene& scene) noexcept {
 
 void FirstFrames::repeat(std::uint64_t frames) noexcept {
   for (; frames > 0 && count_ > 0 && count_ < most; --frames, ++count_) {
-    std::ranges::copy(sketches_.subspan((count_ - 1) * words, words),
-                      sketches_.subspan(count_ * words).begin());
+    std::ranges::copy(sketch(count_ - 1), sketches_.subspan(count_ * words).begin());
     scenes_[count_] = scenes_[count_ - 1];
     scenes_[count_].novelty = scenes_[count_].change = 0.0;
   }
@@ -60,8 +59,9 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
     std::size_t from = row;
     for (std::size_t by = 0; by < scene.moves().size() && row >= session.first + by; ++by) {
       ++sketches;
-      const std::uint32_t bits = map.rows().look_closely(sketch(frame), order.slot(row - by));
-      const double likely = scene.moves()[by] * exponential(scene.likeness(bits));
+      const double share =
+          map.rows().look_closely(sketch(frame), order.slot(row - by)) / DescriptorRows::close_bits;
+      const double likely = scene.moves()[by] * exponential(scene.likeness(share));
       if (likely <= best) continue;
       best = likely;
       from = row - by;

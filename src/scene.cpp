@@ -123,7 +123,7 @@ RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, Close
     }
     contrast = (around / weight - here) / scene.deviation;
   }
-  const double z = (scene.mean - here) / scene.deviation;
+  const double z = scene.likeness(here);
   return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast};
 }
 

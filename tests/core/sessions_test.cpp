@@ -230,20 +230,29 @@ struct RoadOfTwo {
   static constexpr std::size_t both = 14;
   static constexpr std::size_t past = 60;
 
+  static constexpr std::size_t end = border + past;
+
   PlaceMap map;
   std::size_t second;  // its first row
 
-  RoadOfTwo(const Vectors& ends, const Vectors& goes_on, bool ends_first,
-            const MatcherConfig& config)
-      : map(ends_first ? map_of_sessions({ends, goes_on}, config, 0)
-                       : map_of_sessions({goes_on, ends}, config, 0)),
-        second(ends_first ? border : 0) {
-    const std::size_t first = ends_first ? 0 : goes_on.size();
+  /// @param noise of the second session
+  RoadOfTwo(std::uint32_t road, float noise, bool ends_first, const MatcherConfig& config)
+      : map(of_sessions(road, noise, ends_first, config)), second(ends_first ? border : 0) {
+    const std::size_t first = ends_first ? 0 : both + past;
     for (std::size_t row = 0; row < both; ++row) {
       const std::size_t a = first + border - both + row;
       const std::size_t b = second + row;
       map.set_first_visit(std::max(a, b), map.order().number(std::min(a, b)));
     }
+  }
+
+  static PlaceMap of_sessions(std::uint32_t road, float noise, bool ends_first,
+                              const MatcherConfig& config) {
+    const Vectors ends = test::way(road, border, 0.5F, 1);
+    const Vectors whole = test::way(road, end, noise, 2);
+    const Vectors goes_on(whole.begin() + (border - both), whole.end());
+    return ends_first ? map_of_sessions({ends, goes_on}, config, 0)
+                      : map_of_sessions({goes_on, ends}, config, 0);
   }
 
   /// The frame of the road that a place of the second session is; none for one of the first.
@@ -259,23 +268,19 @@ TEST_P(Sessions, OneThatEndsHandsOverHowTheRobotCame) {
   MatcherConfig config;
   config.arithmetic = GetParam();
   constexpr std::size_t border = RoadOfTwo::border;
-  constexpr std::size_t end = border + RoadOfTwo::past;
   for (const bool ends_first : {true, false}) {
     std::size_t right = 0;
     std::size_t wrong = 0;
     for (std::uint32_t road = 1; road <= 24; ++road) {
-      const Vectors whole = test::way(road, end, 0.5F, 2);
       Vectors query = test::way(road, border, 0.5F, 3);
-      const Vectors badly = test::way(road, end, 24.0F, 3);
+      const Vectors badly = test::way(road, RoadOfTwo::end, 24.0F, 3);
       query.insert(query.end(), badly.begin() + border, badly.end());
-      RoadOfTwo both(test::way(road, border, 0.5F, 1),
-                     {whole.begin() + (border - RoadOfTwo::both), whole.end()}, ends_first, config);
+      RoadOfTwo both(road, 0.5F, ends_first, config);
       Detector detector(config, both.map);
       const auto count = [&](std::span<const Answer> answers) {
         for (const Answer& answer : answers) {
           if (answer.frame < border || answer.gate != Gate::match) continue;
           const auto frame = both.frame(answer.match->place);
-          // It sees next to nothing: a few are further off.
           const bool is = frame && *frame <= answer.frame + 5 && answer.frame <= *frame + 5;
           (is ? right : wrong) += 1;
         }
@@ -286,7 +291,8 @@ TEST_P(Sessions, OneThatEndsHandsOverHowTheRobotCame) {
     std::printf("accepted past the border: %zu right, %zu wrong of %zu\n", right, wrong,
                 24 * RoadOfTwo::past);
     EXPECT_GT(right, 880U) << ends_first;
-    EXPECT_LT(wrong, 60U) << ends_first;
+    // It sees next to nothing: where the newer session ends, a few are further off.
+    EXPECT_LE(wrong, ends_first ? 0U : 60U);
   }
 }
 
@@ -296,15 +302,12 @@ TEST_P(Sessions, OneThatEndsHandsOverWhatIsBelievedOfIt) {
   MatcherConfig config;
   config.arithmetic = GetParam();
   constexpr std::size_t border = RoadOfTwo::border;
-  constexpr std::size_t end = border + RoadOfTwo::past;
   for (const bool ends_first : {true, false}) {
     std::size_t goes_on = 0;
     for (std::uint32_t road = 1; road <= 24; ++road) {
-      const Vectors whole = test::way(road, end, 8.0F, 2);
-      RoadOfTwo both(test::way(road, border, 0.5F, 1),
-                     {whole.begin() + (border - RoadOfTwo::both), whole.end()}, ends_first, config);
+      RoadOfTwo both(road, 8.0F, ends_first, config);
       Detector detector(config, both.map);
-      const Vectors query = test::way(road, end, 0.5F, 3);
+      const Vectors query = test::way(road, RoadOfTwo::end, 0.5F, 3);
       for (std::size_t seen = 0; seen < border + 6; ++seen) {
         const FrameReport report = detector.step(query[seen]);
         if (seen < border + 3 || !report.now) continue;

@@ -45,10 +45,8 @@ struct Scene {
   }
 
   /// How much more alike than rows usually are, in their deviations.
-  /// @param differing bits of the close words of two sketches
-  [[nodiscard]] double likeness(std::uint32_t differing) const noexcept {
-    return (mean - differing / DescriptorRows::close_bits) / deviation;
-  }
+  /// @param share of bits in which the sketches differ
+  [[nodiscard]] double likeness(double share) const noexcept { return (mean - share) / deviation; }
 };
 
 /// The close words of a frame's sketch.
