@@ -32,6 +32,11 @@ std::size_t words_of(const DescriptorForm& form) {
   return form.scanned ? DescriptorRows::close_words : 0;
 }
 
+/// Whether differences come from dot products.
+bool by_dots(const DescriptorForm& form) {
+  return form.difference == Difference::euclidean && form.arithmetic != Arithmetic::sketch;
+}
+
 constexpr std::size_t block_abreast = DescriptorRows::block_rows;
 
 /// Calls `work(begin, count)` for pieces of at most `most`.
@@ -64,8 +69,6 @@ void in_blocks(std::size_t ring, std::size_t query, std::span<const std::span<Va
     work(QueriesByRows<Value>{0, columns.subspan(before_end), row, count});
   });
 }
-
-float root(double square) noexcept { return static_cast<float>(std::sqrt(square)); }
 
 /// Writes a number, the lowest byte first.
 template <class Number>
@@ -109,8 +112,7 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
                                                  : 0)),
       small_(arena.take<std::int8_t>(
           names.values, form.arithmetic == Arithmetic::int8 ? std::uint64_t{rows} * stride_ : 0)),
-      inverse_lengths_(
-          arena.take<double>(names.lengths, form.arithmetic == Arithmetic::int8 ? rows : 0)),
+      lengths_(arena.take<double>(names.lengths, by_dots(form) ? rows : 0)),
       quantised_(arena.take<std::int8_t>(
           "what a sketch is made of",
           words_ > 0 && form.arithmetic != Arithmetic::int8 ? padded_bytes(form.size) : 0)),
@@ -127,15 +129,21 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
 void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
     std::ranges::copy(descriptor, exact_.subspan(row * stride_, stride_).begin());
+    measure(row);
   }
   std::span<std::int8_t> bytes = quantised_;
   if (form_.arithmetic == Arithmetic::int8) {
     bytes = small(row);
-    inverse_lengths_[row] = inverse_length(quantise(descriptor, bytes).squared_norm);
+    lengths_[row] = inverse_length(quantise(descriptor, bytes).squared_norm);
   } else if (words_ > 0) {
     quantise(descriptor, bytes);
   }
   sketch_row(row, bytes);
+}
+
+void DescriptorRows::measure(std::size_t row) noexcept {
+  if (lengths_.empty()) return;
+  float_column_->dots(exact(row).data(), exact(row).data(), stride_, 1, &lengths_[row]);
 }
 
 void DescriptorRows::sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept {
@@ -219,14 +227,14 @@ bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noe
       for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
       }
+      measure(row);
       return all_finite(values);
     }
     case Arithmetic::int8: {
       const std::span<std::int8_t> bytes = small(row);
       std::memcpy(bytes.data(), saved.data(), saved.size());
       if (std::memchr(saved.data(), no_value, saved.size()) != nullptr) return false;
-      inverse_lengths_[row] =
-          inverse_length(kernels_->dot(bytes.data(), bytes.data(), bytes.size()));
+      lengths_[row] = inverse_length(kernels_->dot(bytes.data(), bytes.data(), bytes.size()));
       return true;
     }
     case Arithmetic::sketch:
@@ -248,24 +256,31 @@ void DescriptorRows::copy(std::size_t row, const DescriptorRows& from,
   };
   copy_row(exact_, from.exact_, stride_);
   copy_row(small_, from.small_, stride_);
-  copy_row(inverse_lengths_, from.inverse_lengths_, 1);
+  copy_row(lengths_, from.lengths_, 1);
   copy_row(sketches_, from.sketches_, words_);
   copy_row(scanned_, from.scanned_, scanned_words);
+}
+
+void DescriptorRows::distances(std::span<const double> dots, double query_square, std::size_t first,
+                               std::span<float> out) const noexcept {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = euclidean(query_square, lengths_[first + i], dots[i]);
+  }
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, std::size_t first,
                              std::span<float> out) const noexcept {
   if (form_.difference != Difference::euclidean) {
     for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = difference(form_.difference, queries.exact(query), exact(first + i), form_.size);
+      out[i] = mean_absolute(queries.exact(query), exact(first + i), form_.size);
     }
     return;
   }
-  std::array<double, abreast> squares;
+  std::array<double, abreast> dots;
   in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
-    float_column_->squares(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
-                           squares.data());
-    std::ranges::transform(std::span(squares).first(count), out.subspan(begin).begin(), root);
+    float_column_->dots(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
+                        dots.data());
+    distances(dots, queries.lengths_[query], first + begin, out.subspan(begin, count));
   });
 }
 
@@ -286,22 +301,21 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
     const std::size_t row = first + begin;
     kernels_->dot_column(queries.small(query).data(), small(row).data(), stride_, count,
                          dots.data());
-    fixed_distances(std::span(dots).first(count), queries.inverse_lengths_[query],
-                    inverse_lengths_.subspan(row, count), out.subspan(begin, count));
+    fixed_distances(std::span(dots).first(count), queries.lengths_[query],
+                    lengths_.subspan(row, count), out.subspan(begin, count));
   });
 }
 
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
-                             std::span<const std::span<float>> out,
-                             std::span<float> room) const noexcept {
-  std::array<double, MatcherConfig::most_frames_at_once * block_abreast> squares;
-  in_blocks(queries.exact_.size() / stride_, query, out, [&](const auto& block) {
-    float_column_->squares_block(queries.exact(block.query).data(), block.columns.size(),
-                                 exact(block.row).data(), stride_, block.count, squares.data(),
-                                 block_abreast, room.data());
+                             std::span<const std::span<float>> out) const noexcept {
+  std::array<double, MatcherConfig::most_frames_at_once * block_abreast> dots;
+  in_blocks(queries.lengths_.size(), query, out, [&](const auto& block) {
+    float_column_->dots_block(queries.exact(block.query).data(), block.columns.size(),
+                              exact(block.row).data(), stride_, block.count, dots.data(),
+                              block_abreast);
     for (std::size_t q = 0; q < block.columns.size(); ++q) {
-      std::ranges::transform(std::span(squares).subspan(q * block_abreast, block.count),
-                             block.columns[q].subspan(block.row).begin(), root);
+      distances(std::span(dots).subspan(q * block_abreast), queries.lengths_[block.query + q],
+                block.row, block.columns[q].subspan(block.row, block.count));
     }
   });
 }
@@ -309,19 +323,16 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
 void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
                              std::span<const std::span<std::uint16_t>> out) const noexcept {
   std::array<std::int32_t, MatcherConfig::most_frames_at_once * block_abreast> dots;
-  in_blocks(queries.inverse_lengths_.size(), query, out, [&](const auto& block) {
+  in_blocks(queries.lengths_.size(), query, out, [&](const auto& block) {
     kernels_->dot_block(queries.small(block.query).data(), block.columns.size(),
                         small(block.row).data(), stride_, block.count, dots.data(), block_abreast);
     for (std::size_t q = 0; q < block.columns.size(); ++q) {
       fixed_distances(std::span(dots).subspan(q * block_abreast, block.count),
-                      queries.inverse_lengths_[block.query + q],
-                      inverse_lengths_.subspan(block.row, block.count),
+                      queries.lengths_[block.query + q], lengths_.subspan(block.row, block.count),
                       block.columns[q].subspan(block.row, block.count));
     }
   });
 }
-
-std::size_t DescriptorRows::compare_room() noexcept { return FloatColumn::block_room; }
 
 double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
@@ -355,7 +366,7 @@ void DescriptorRows::restore(std::size_t row, std::span<float> out) const noexce
         out[i] = exact(row)[i];
         break;
       case Arithmetic::int8:
-        out[i] = static_cast<float>(small(row)[i] * inverse_lengths_[row]);
+        out[i] = static_cast<float>(small(row)[i] * lengths_[row]);
         break;
       case Arithmetic::sketch: {
         const std::uint64_t bits = sketches_[row * words_ + i / 64];

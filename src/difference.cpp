@@ -2,27 +2,50 @@
 #include "seqloop/difference.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "kernels/lane_squares.hpp"
+#include "kernels/lane_dots.hpp"
 #include "seqloop/detail/lane_sums.hpp"
 
 namespace seqloop {
 
-double squared_distance(std::span<const float> a, std::span<const float> b) noexcept {
-  return kernels::sum_of_squares(a.data(), b.data(), a.size());
+double dot(std::span<const float> a, std::span<const float> b) noexcept {
+  return kernels::lane_dot(a.data(), b.data(), a.size());
 }
 
 float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
-  return static_cast<float>(std::sqrt(squared_distance(a, b)));
+  const double square = sum_in_lanes(a.size(), [&](std::size_t i) {
+    const double apart = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    return apart * apart;
+  });
+  return static_cast<float>(std::sqrt(square));
+}
+
+float euclidean(double aa, double bb, double ab) noexcept {
+  return static_cast<float>(std::sqrt(std::max(0.0, aa + bb - 2.0 * ab)));
 }
 
 float mean_absolute(std::span<const float> a, std::span<const float> b, std::size_t size) noexcept {
-  const auto add = [](float value, float sum) { return sum + std::abs(value); };
-  return static_cast<float>(kernels::sum_of_differences(a.data(), b.data(), a.size(), add) /
-                            static_cast<double>(size));
+  // Partial sums move to double before float has lost digits on long descriptors.
+  constexpr std::size_t block = 64 * lanes;
+  double sum = 0.0;
+  for (std::size_t first = 0; first < a.size(); first += block) {
+    const std::size_t last = std::min(first + block, a.size());
+    std::array<float, lanes> partial{};
+    for (std::size_t i = first; i < last; i += lanes) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        partial[lane] += std::abs(a[i + lane] - b[i + lane]);
+      }
+    }
+    for (std::size_t lane = 0; lane < lanes; lane += 4) {
+      sum += static_cast<double>((partial[lane] + partial[lane + 2]) +
+                                 (partial[lane + 1] + partial[lane + 3]));
+    }
+  }
+  return static_cast<float>(sum / static_cast<double>(size));
 }
 
 float difference(Difference kind, std::span<const float> a, std::span<const float> b,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 namespace seqloop {
 namespace {
@@ -53,10 +52,7 @@ DifferenceSlices::DifferenceSlices(Arena& arena, const MatcherConfig& config,
                          whole_ ? columns_of(config) : 0, capacity.places, margin_of(config)),
       whole_enhanced_(arena, "enhanced slices", "filled parts of the enhanced slices",
                       whole_ && enhance_ ? columns_of(config) : 0, capacity.places,
-                      margin_of(config)),
-      room_(arena.take<float>(
-          "room to compare frames at once",
-          whole_ || config.frames_at_once == 1 ? 0 : DescriptorRows::compare_room())) {}
+                      margin_of(config)) {}
 
 void DifferenceSlices::repeat() noexcept {
   const std::uint64_t frame = queries_->newest();
@@ -116,11 +112,7 @@ void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexc
       columns[i] = differences.take_over(first + i, map.size());
     }
     const std::span<const std::span<Value>> newest = std::span(columns).first(count);
-    if constexpr (std::is_same_v<Value, float>) {
-      map.rows().compare(queries_->rows(), queries_->row_of(first), newest, room_);
-    } else {
-      map.rows().compare(queries_->rows(), queries_->row_of(first), newest);
-    }
+    map.rows().compare(queries_->rows(), queries_->row_of(first), newest);
   };
   if (whole_) {
     fill(whole_differences_);

@@ -2,7 +2,7 @@
 #include <immintrin.h>
 
 #include "kernels/composed_of.hpp"
-#include "kernels/float_tiles.hpp"
+#include "kernels/float_dots.hpp"
 #include "kernels/four_sums.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/sketches.hpp"
@@ -94,6 +94,8 @@ void sketch_together_avx2(const std::uint8_t* both, const std::uint32_t* chosen,
 constinit const IntegerKernels avx2 = composed_of<Products, HighwayDifferences, HighwayLanes>(
     "avx2", &has_avx2, &sketch_together_avx2);
 
-constinit const FloatColumn float_avx2{"avx2", &has_avx2, &squares, &squares_block};
+constinit const FloatColumn float_avx2{
+    "avx2", &has_avx2, &dots,
+    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, dot_lanes>, 3, 4>};
 
 }  // namespace seqloop::kernels

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
-#include "kernels/float_blocks.hpp"
+#include "kernels/float_dots.hpp"
 #include "kernels/highway.hpp"
 #include "kernels/sketches.hpp"
 #include "kernels/variants.hpp"
@@ -38,6 +38,8 @@ constinit const IntegerKernels avx512 =
     composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512,
                                                                    &sketch_together_avx512);
 
-constinit const FloatColumn float_avx512{"avx512", &has_avx512, &squares, &squares_block};
+constinit const FloatColumn float_avx512{
+    "avx512", &has_avx512, &dots,
+    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 2 * dot_lanes>, 4, 4>};
 
 }  // namespace seqloop::kernels

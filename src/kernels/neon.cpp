@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/composed_of.hpp"
 #ifdef __aarch64__
-#include "kernels/float_blocks.hpp"
+#include "kernels/float_dots.hpp"
 #endif
 #include "kernels/highway.hpp"
 #include "kernels/neon_bytes.hpp"
@@ -71,7 +71,8 @@ constinit const IntegerKernels neon = composed_of<Products, HighwayDifferences, 
     "neon", &has_neon, &sketch_together_neon);
 
 #ifdef __aarch64__  // 32-bit ARM: float_vfpv4.cpp
-constinit const FloatColumn float_neon{"neon", &has_neon, &squares, &squares_block};
+constinit const FloatColumn float_neon{
+    "neon", &has_neon, &dots, &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 4>, 4, 4>};
 #endif
 
 }  // namespace seqloop::kernels

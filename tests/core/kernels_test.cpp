@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/matcher.hpp"
@@ -21,42 +23,77 @@ namespace {
 TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
   std::mt19937 random(11);
   std::normal_distribution<float> normal;
-  for (const std::size_t size : {0U, 16U, 32U, 48U, 1024U, 1040U, 9216U}) {
-    std::vector<float> a(size);
-    std::vector<float> b(size);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < size; ++i) {
-      a[i] = normal(random);
-      b[i] = normal(random);
-      sum += (static_cast<double>(a[i]) - static_cast<double>(b[i])) *
-             (static_cast<double>(a[i]) - static_cast<double>(b[i]));
+  double furthest = 0.0;
+  for (const std::size_t size : {16U, 32U, 48U, 512U, 528U, 9216U, 64896U}) {
+    // From nearly equal to unlike.
+    for (const float noise : {1e-4F, 1e-3F, 0.01F, 0.1F, 1.0F, 10.0F}) {
+      std::vector<float> a(size);
+      std::vector<float> b(size);
+      for (std::size_t i = 0; i < size; ++i) {
+        a[i] = normal(random);
+        b[i] = a[i] + noise * normal(random);
+      }
+      normalise(a);
+      normalise(b);
+      double square = 0.0;
+      for (std::size_t i = 0; i < size; ++i) {
+        const double differ = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+        square += differ * differ;
+      }
+      EXPECT_NEAR(euclidean(a, b), std::sqrt(square), 1e-7);
+      const auto distance = static_cast<double>(euclidean(dot(a, a), dot(b, b), dot(a, b)));
+      furthest = std::max(furthest, std::abs(distance * distance - square));
+      EXPECT_EQ(euclidean(dot(a, a), dot(a, a), dot(a, a)), 0.0F)
+          << "equal vectors must not differ by rounding";
     }
-    EXPECT_NEAR(euclidean(a, b), std::sqrt(sum), 1e-5 * (1.0 + std::sqrt(sum))) << size;
-    EXPECT_EQ(euclidean(a, a), 0.0F) << "equal vectors must not differ by rounding";
+  }
+  std::printf("squares of distances from dot products: %.1e off at most\n", furthest);
+  EXPECT_LE(furthest, 5e-7);
+  EXPECT_EQ(euclidean({}, {}), 0.0F);
+}
+
+TEST(Euclidean, OfTheWorstRoundingStaysWithinItsBound) {
+  // Each product falls between two floats just above where it began, and all round one way.
+  for (const std::size_t size : {512U, 9216U}) {
+    std::vector<float> a(size, 1.0F);
+    for (std::size_t i = 0; i < size; ++i) a[i] += 0.37F * static_cast<float>(i / dot_lanes % 64);
+    normalise(a);
+    double exact = 0.0;
+    for (const float value : a) exact += static_cast<double>(value) * static_cast<double>(value);
+    EXPECT_NEAR(dot(a, a), exact, 67.0 * std::ldexp(1.0, -24) * exact) << size;
   }
 }
 
-/// The order of additions as `euclidean` describes it, by the library's own fused multiply-add.
-double squares_in_order(std::span<const float> a, std::span<const float> b) {
+/// The order of additions as `dot` describes it, by the library's own fused multiply-add.
+double dot_in_order(std::span<const float> a, std::span<const float> b) {
   double sum = 0.0;
-  for (std::size_t first = 0; first < a.size(); first += 1024) {
-    std::array<float, 16> lane{};
-    for (std::size_t i = first; i < std::min(first + 1024, a.size()); ++i) {
-      const float differ = a[i] - b[i];
-      lane[i % 16] = std::fmaf(differ, differ, lane[i % 16]);
+  for (std::size_t first = 0; first < a.size(); first += 512) {
+    std::array<float, 8> lane{};
+    for (std::size_t i = first; i < std::min(first + 512, a.size()); ++i) {
+      lane[i % 8] = std::fmaf(a[i], b[i], lane[i % 8]);
     }
-    for (std::size_t i = 0; i < 16; i += 4) {
-      sum += static_cast<double>((lane[i] + lane[i + 2]) + (lane[i + 1] + lane[i + 3]));
-    }
+    const float low = (lane[0] + lane[2]) + (lane[1] + lane[3]);
+    const float high = (lane[4] + lane[6]) + (lane[5] + lane[7]);
+    sum += static_cast<double>(low + high);
   }
   return sum;
+}
+
+/// Equal, or neither a number.
+void expect_same(double dot, double expected, const std::string& what) {
+  if (std::isnan(expected)) {
+    ASSERT_TRUE(std::isnan(dot)) << what;
+  } else {
+    ASSERT_EQ(dot, expected) << what;
+  }
 }
 
 TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
   std::mt19937 random(16);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
-  constexpr std::size_t size = 1040;
-  // Squares below the smallest normal number, sums half way between two floats, sums beyond all.
+  constexpr std::size_t size = 528;
+  // Products below the smallest normal number, sums half way between two floats, sums beyond all;
+  // and sums that come near zero, where terms take each other off.
   const std::vector<float> scales{1.0F, 1e-3F, 1e-19F, 3e-23F, 1e19F, 3e38F};
   const std::vector<float> steps{0.0F, 4096.0F, 8.0F};
   for (const float scale : scales) {
@@ -70,14 +107,18 @@ TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
                  (steps_of_one > 0.0F ? std::round(value * steps_of_one) / steps_of_one : value);
         };
         for (float& value : query) value = drawn(step);
-        for (float& value : std::span(rows).first(3 * size)) value = drawn(8.0F);
+        for (float& value : std::span(rows).first(2 * size)) value = drawn(8.0F);
+        for (std::size_t i = 0; i < size; ++i) {
+          rows[2 * size + i] = i / 8 % 2 == 0 ? query[i] : -query[i - 8];
+        }
         for (const FloatColumn* column : float_columns()) {
           if (!column->supported()) continue;
-          std::array<double, 4> sums{};
-          column->squares(query.data(), rows.data(), size, sums.size(), sums.data());
-          for (std::size_t row = 0; row < sums.size(); ++row) {
-            ASSERT_EQ(sums[row], squares_in_order(query, std::span(rows).subspan(row * size, size)))
-                << column->name << ' ' << scale << ' ' << step << ' ' << row;
+          std::array<double, 4> dots{};
+          column->dots(query.data(), rows.data(), size, dots.size(), dots.data());
+          for (std::size_t row = 0; row < dots.size(); ++row) {
+            expect_same(dots[row], dot_in_order(query, std::span(rows).subspan(row * size, size)),
+                        std::string(column->name) + ' ' + std::to_string(scale) + ' ' +
+                            std::to_string(step) + ' ' + std::to_string(row));
           }
         }
       }
@@ -96,13 +137,13 @@ TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
         std::vector<float> rows(count * size);
         for (float& value : query) value = normal(random);
         for (float& value : rows) value = normal(random);
-        std::vector<double> sums(count + 1, -1.0);
-        column->squares(query.data(), rows.data(), size, count, sums.data());
+        std::vector<double> dots(count + 1, -1.0);
+        column->dots(query.data(), rows.data(), size, count, dots.data());
         for (std::size_t row = 0; row < count; ++row) {
-          EXPECT_EQ(sums[row], squared_distance(query, std::span(rows).subspan(row * size, size)))
+          EXPECT_EQ(dots[row], dot(query, std::span(rows).subspan(row * size, size)))
               << column->name << ' ' << size << ' ' << row;
         }
-        EXPECT_EQ(sums[count], -1.0) << "nothing behind the last";
+        EXPECT_EQ(dots[count], -1.0) << "nothing behind the last";
       }
     }
   }
@@ -111,8 +152,7 @@ TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
 TEST(FloatColumns, OfSeveralAreThoseOfEach) {
   std::mt19937 random(15);
   std::normal_distribution<float> normal;
-  std::vector<float> room(FloatColumn::block_room);
-  // With squares below the smallest normal number, and sums beyond the largest.
+  // With products below the smallest normal number, and sums beyond the largest.
   const auto compare = [&](std::size_t size, std::size_t queries, std::size_t count, float scale) {
     std::vector<float> query(queries * size);
     std::vector<float> rows(count * size);
@@ -121,29 +161,30 @@ TEST(FloatColumns, OfSeveralAreThoseOfEach) {
     const std::size_t stride = count + 2;
     for (const FloatColumn* column : float_columns()) {
       if (!column->supported()) continue;
-      std::vector<double> sums(queries * stride, -1.0);
-      column->squares_block(query.data(), queries, rows.data(), size, count, sums.data(), stride,
-                            room.data());
+      std::vector<double> dots(queries * stride, -1.0);
+      column->dots_block(query.data(), queries, rows.data(), size, count, dots.data(), stride);
       for (std::size_t q = 0; q < queries; ++q) {
         for (std::size_t row = 0; row < count; ++row) {
-          ASSERT_EQ(sums[q * stride + row],
-                    squared_distance(std::span(query).subspan(q * size, size),
-                                     std::span(rows).subspan(row * size, size)))
-              << column->name << ' ' << size << ' ' << q << ' ' << row << ' ' << scale;
+          expect_same(dots[q * stride + row],
+                      dot(std::span(query).subspan(q * size, size),
+                          std::span(rows).subspan(row * size, size)),
+                      std::string(column->name) + ' ' + std::to_string(size) + ' ' +
+                          std::to_string(q) + ' ' + std::to_string(row) + ' ' +
+                          std::to_string(scale));
         }
-        EXPECT_EQ(sums[q * stride + count], -1.0) << "nothing behind the last";
+        EXPECT_EQ(dots[q * stride + count], -1.0) << "nothing behind the last";
       }
     }
   };
-  for (const std::size_t size : {0U, 16U, 736U, 1024U, 2064U}) {
-    for (const std::size_t queries : {0U, 1U, 2U, 4U, 7U, 11U}) {
+  for (const std::size_t size : {0U, 16U, 512U, 736U, 2064U}) {
+    for (const std::size_t queries : {0U, 1U, 2U, 3U, 4U, 7U, 11U}) {
       for (const std::size_t count : {0U, 1U, 4U, 11U, 16U, 33U}) {
         compare(size, queries, count, 1.0F);
       }
     }
     for (const float scale : {1e-19F, 3e-23F, 1e19F, 1e37F}) compare(size, 11, 33, scale);
   }
-  compare(1040, FloatColumn::block_queries, 96, 1.0F);
+  compare(1040, MatcherConfig::most_frames_at_once, 96, 1.0F);
 }
 
 TEST(MeanAbsolute, EqualsTheDefinitionWithoutThePadding) {

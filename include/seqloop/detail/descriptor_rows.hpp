@@ -92,14 +92,10 @@ class DescriptorRows {
   /// Euclid, and `int8`.
   /// @param query rows of the queries from this one on; behind their last follows their first
   /// @param out   one column a query, at most `MatcherConfig::most_frames_at_once`
-  /// @param room  [compare_room()]
   void compare(const DescriptorRows& queries, std::size_t query,
-               std::span<const std::span<float>> out, std::span<float> room) const noexcept;
+               std::span<const std::span<float>> out) const noexcept;
   void compare(const DescriptorRows& queries, std::size_t query,
                std::span<const std::span<std::uint16_t>> out) const noexcept;
-
-  /// Values that comparing several descriptors of floats needs room for.
-  [[nodiscard]] static std::size_t compare_room() noexcept;
 
   /// The difference of two, 0 .. 2 between unit vectors.
   [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;
@@ -137,6 +133,10 @@ class DescriptorRows {
   [[nodiscard]] const DescriptorForm& form() const noexcept { return form_; }
 
  private:
+  /// Of floats: from dot products of a query with rows from `first` on.
+  void distances(std::span<const double> dots, double query_square, std::size_t first,
+                 std::span<float> out) const noexcept;
+  void measure(std::size_t row) noexcept;
   void sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept;
   void copy_scanned(std::size_t row) noexcept;
   [[nodiscard]] std::span<const float> exact(std::size_t row) const noexcept {
@@ -149,13 +149,13 @@ class DescriptorRows {
   DescriptorForm form_;
   const IntegerKernels* kernels_;
   const FloatColumn* float_column_;
-  std::size_t stride_;                 // values from row to row
-  std::size_t words_;                  // of a sketch
-  std::span<float> exact_;             // [rows, stride], float32
-  std::span<std::int8_t> small_;       // [rows, stride], int8
-  std::span<double> inverse_lengths_;  // [rows], int8
-  std::span<std::int8_t> quantised_;   // [stride], what only a sketch is made of
-  std::span<std::uint8_t> both_;       // [2 D], a descriptor and its negative
+  std::size_t stride_;                // values from row to row
+  std::size_t words_;                 // of a sketch
+  std::span<float> exact_;            // [rows, stride], float32
+  std::span<std::int8_t> small_;      // [rows, stride], int8
+  std::span<double> lengths_;         // [rows], int8: one over them; float32: their squares
+  std::span<std::int8_t> quantised_;  // [stride], what only a sketch is made of
+  std::span<std::uint8_t> both_;      // [2 D], a descriptor and its negative
   std::span<SketchedValue> sketched_values_;
   std::span<std::uint64_t> sketches_;  // [rows, words_]
   std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side

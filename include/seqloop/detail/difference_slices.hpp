@@ -87,7 +87,6 @@ class DifferenceSlices {
   ColumnRing<float> enhanced_;
   ColumnRing<std::uint16_t> whole_differences_;
   ColumnRing<std::uint16_t> whole_enhanced_;
-  std::span<float> room_;  // to compare several frames of floats at once
 };
 
 }  // namespace seqloop

@@ -107,8 +107,8 @@ std::vector<Contender> our_columns(Places& places) {
         });
   }
   add("seqloop-float", places.rows.size_bytes(), [&places] {
-    best_float_column().squares(places.query.data(), places.rows.data(), places.query.size(),
-                                places.size.places, places.squares.data());
+    best_float_column().dots(places.query.data(), places.rows.data(), places.query.size(),
+                             places.size.places, places.squares.data());
     std::ranges::transform(places.squares, places.floats.begin(),
                            [](double square) { return static_cast<float>(std::sqrt(square)); });
   });

@@ -75,19 +75,17 @@ struct Matched {
   Detector detector;
 };
 
-/// All differences of floats, squared: what a product of matrices is compared with.
+/// All dot products of floats: what a product of matrices is compared with.
 void compare_all(const Drive& query, const Drive& reference) {
   constexpr std::size_t abreast = DescriptorRows::block_rows;
   const FloatColumn& kernels = best_float_column();
   const std::size_t stride = query.values().size() / query.frames();
-  std::vector<double> sums(frames_at_once * abreast);
-  std::vector<float> room(FloatColumn::block_room);
+  std::vector<double> dots(frames_at_once * abreast);
   for (std::size_t first = 0; first < query.frames(); first += frames_at_once) {
     const std::size_t count = std::min(frames_at_once, query.frames() - first);
     for (std::size_t row = 0; row < reference.frames(); row += abreast) {
-      kernels.squares_block(query.frame(first).data(), count, reference.frame(row).data(), stride,
-                            std::min(abreast, reference.frames() - row), sums.data(), abreast,
-                            room.data());
+      kernels.dots_block(query.frame(first).data(), count, reference.frame(row).data(), stride,
+                         std::min(abreast, reference.frames() - row), dots.data(), abreast);
     }
   }
 }

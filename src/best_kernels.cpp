@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <span>
+
+#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/integer_kernels.hpp"
+
+namespace seqloop {
+namespace {
+
+/// The last one is in plain C++, so that one is always found.
+template <class Kernels>
+const Kernels& first_supported(std::span<const Kernels* const> variants) noexcept {
+  return **std::ranges::find_if(variants,
+                                [](const Kernels* kernels) { return kernels->supported(); });
+}
+
+}  // namespace
+
+const IntegerKernels& best_integer_kernels() noexcept { return first_supported(integer_kernels()); }
+
+const FloatColumn& best_float_column() noexcept { return first_supported(float_columns()); }
+
+}  // namespace seqloop
