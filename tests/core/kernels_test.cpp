@@ -53,7 +53,7 @@ TEST(Euclidean, EqualsTheDefinitionForEveryLength) {
 }
 
 TEST(Euclidean, OfTheWorstRoundingStaysWithinItsBound) {
-  // Each product falls between two floats just above where it began, and all round one way.
+  // All of one sign, and growing over the steps of a lane, so that nothing evens out.
   for (const std::size_t size : {512U, 9216U}) {
     std::vector<float> a(size, 1.0F);
     for (std::size_t i = 0; i < size; ++i) a[i] += 0.37F * static_cast<float>(i / dot_lanes % 64);

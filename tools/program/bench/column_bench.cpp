@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -34,7 +33,7 @@ struct Places {
         dots(size.places),
         distances(size.places),
         bits(size.places),
-        squares(size.places),
+        float_dots(size.places),
         floats(size.places),
         memory(size.places * (query.size() * sizeof(float) + stride + sketch_words * 8) +
                    3 * Arena::alignment,
@@ -72,7 +71,7 @@ struct Places {
   std::vector<std::int32_t> dots;
   std::vector<std::uint16_t> distances;
   std::vector<std::uint32_t> bits;
-  std::vector<double> squares;
+  std::vector<double> float_dots;
   std::vector<float> floats;
   ArenaMemory memory;
   std::span<float> rows;
@@ -108,9 +107,9 @@ std::vector<Contender> our_columns(Places& places) {
   }
   add("seqloop-float", places.rows.size_bytes(), [&places] {
     best_float_column().dots(places.query.data(), places.rows.data(), places.query.size(),
-                             places.size.places, places.squares.data());
-    std::ranges::transform(places.squares, places.floats.begin(),
-                           [](double square) { return static_cast<float>(std::sqrt(square)); });
+                             places.size.places, places.float_dots.data());
+    std::ranges::transform(places.float_dots, places.floats.begin(),
+                           [](double dot) { return euclidean(1.0, 1.0, dot); });
   });
   return contenders;
 }
