@@ -22,6 +22,12 @@ bool links(const MatcherConfig& config, const Capacity& capacity) {
          (config.use == Use::close_loops || capacity.sessions > 1);
 }
 
+/// Whether descriptors come as they are, and are standardised here: to a map that is filled by the
+/// drive alone they come standardised.
+bool learns(const MatcherConfig& config, const Capacity& capacity) {
+  return config.standardisation.on && (config.use == Use::localise || capacity.sessions > 1);
+}
+
 }  // namespace
 
 std::vector<BufferSize> PlaceMap::plan(const MatcherConfig& config, const Capacity& capacity) {
@@ -43,15 +49,14 @@ PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaM
 PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
                    ArenaMemory&& memory)
     : memory_(std::move(memory)),
-      standardises_(config.standardisation.on &&
-                    (config.use == Use::localise || capacity.sessions > 1)),
+      standardises_(config.standardisation.on),
       full_map_(config.full_map),
       statistics_(arena, capacity.descriptor_size),
       order_(arena, capacity.places, capacity.sessions),
       rows_(arena, {"places", "lengths of places", "sketches of places"},
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
-      standardised_(
-          arena.take<float>("a standardised place", standardises_ ? capacity.descriptor_size : 0)),
+      standardised_(arena.take<float>("a standardised place",
+                                      learns(config, capacity) ? capacity.descriptor_size : 0)),
       side_by_side_(arena.take<std::uint8_t>("sketches of saved places, while they are made",
                                              DescriptorRows::sketch_room(rows_.form()))),
       spacing_(
@@ -71,7 +76,7 @@ bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
 
 bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
   const CandidateRun newest = order_.session(order_.sessions() - 1);
-  if (!standardises_ || newest.first != newest.last || !fits(descriptor)) return false;
+  if (standardised_.empty() || newest.first != newest.last || !fits(descriptor)) return false;
   if (!std::exchange(learning_, true)) statistics_.forget();
   statistics_.observe(descriptor);
   return true;
@@ -79,7 +84,7 @@ bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
 
 bool PlaceMap::add(std::span<const float> descriptor) noexcept {
   if (size() == capacity() || !fits(descriptor)) return false;
-  if (statistics_.frames() != 0) {
+  if (!standardised_.empty() && statistics_.frames() != 0) {
     statistics_.standardise(descriptor, standardised_);
     descriptor = standardised_;
   }

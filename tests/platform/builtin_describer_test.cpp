@@ -2,12 +2,17 @@
 #include "seqloop/opencv/builtin_describer.hpp"
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <bit>
+#include <cmath>
 #include <numeric>
 #include <random>
 
 #include "platform/pictures.hpp"
+#include "seqloop/detector.hpp"
+#include "seqloop/difference.hpp"
 
 namespace seqloop::opencv {
 namespace {
@@ -81,6 +86,96 @@ TEST(BuiltinDescriber, MakesTheSameBytesOnEveryProcessor) {
     sum = (sum ^ std::bit_cast<std::uint32_t>(value)) * 1099511628211U;
   }
   EXPECT_EQ(sum, 1866065813694956368U);
+}
+
+constexpr std::size_t values = 735;
+
+/// The value of a picture's mirror image that means what value `d` does of the picture.
+std::size_t mirrored(std::size_t d) {
+  constexpr std::size_t orientations = 15;
+  constexpr std::size_t cells = 7;
+  const std::size_t orientation = d / (cells * cells);
+  const std::size_t column = d % cells;
+  return ((orientations - orientation) % orientations) * cells * cells + d % (cells * cells) -
+         column + (cells - 1 - column);
+}
+
+// Its filters stand on every second pixel, and on the others in the mirror: hence the tolerance.
+TEST(BuiltinDescriber, SeesInAMirrorWhatItSees) {
+  const auto describer = make_builtin_describer();
+  cv::Mat picture = test::textured(128, 64, 3, CV_8UC1);
+  cv::GaussianBlur(picture, picture, {}, 2.0);
+  cv::Mat mirror;
+  cv::flip(picture, mirror, 1);
+  std::vector<float> one(values);
+  std::vector<float> other(values);
+  ASSERT_EQ(describer->describe(test::image_of(picture), one), Description::good);
+  ASSERT_EQ(describer->describe(test::image_of(mirror), other), Description::good);
+  double apart = 0.0;
+  double apart_as_they_come = 0.0;
+  for (std::size_t d = 0; d < values; ++d) {
+    apart += static_cast<double>(std::abs(one[d] - other[mirrored(d)]));
+    apart_as_they_come += static_cast<double>(std::abs(one[d] - other[d]));
+  }
+  EXPECT_LT(apart, 0.2 * apart_as_they_come);
+}
+
+TEST(ExpectBuiltin, TellsAnEmptyMapWhatValuesUsuallyAre) {
+  const MatcherConfig config{.use = Use::close_loops};
+  PlaceMap map(config, {10, values});
+  ASSERT_TRUE(expect_builtin(map));
+  const RunningStatistics& usual = map.statistics();
+  double squares = 0.0;
+  for (std::size_t d = 0; d < values; ++d) {
+    ASSERT_GT(usual.mean()[d], 0.005) << d;
+    ASSERT_EQ(usual.mean()[d], usual.mean()[mirrored(d)]) << d;
+    squares += usual.mean()[d] * usual.mean()[d] + usual.variance()[d];
+  }
+  EXPECT_NEAR(squares, 1.0, 0.1) << "descriptors are of unit length";
+}
+
+TEST(ExpectBuiltin, LetsADriveStartFromThat) {
+  const MatcherConfig config{.use = Use::close_loops};
+  PlaceMap map(config, {10, values});
+  ASSERT_TRUE(expect_builtin(map));
+  const Detector detector(config, map);
+  EXPECT_EQ(detector.statistics().frames(), config.standardisation.prior_frames);
+  EXPECT_EQ(detector.statistics().mean()[100], map.statistics().mean()[100]);
+}
+
+TEST(ExpectBuiltin, LeavesOtherMapsAlone) {
+  const MatcherConfig config;
+  PlaceMap of_another_size(config, {10, values + 1});
+  EXPECT_FALSE(expect_builtin(of_another_size));
+  EXPECT_EQ(of_another_size.statistics().frames(), 0U);
+
+  MatcherConfig as_they_come;
+  as_they_come.standardisation.on = false;
+  PlaceMap not_standardised(as_they_come, {10, values});
+  EXPECT_FALSE(expect_builtin(not_standardised));
+
+  std::vector<float> descriptor(values, 1.0F);
+  ASSERT_TRUE(normalise(descriptor));
+  PlaceMap with_statistics(config, {10, values});
+  ASSERT_TRUE(with_statistics.learn(descriptor));
+  EXPECT_FALSE(expect_builtin(with_statistics));
+  EXPECT_EQ(with_statistics.statistics().frames(), 1U);
+
+  PlaceMap with_places(config, {10, values});
+  ASSERT_TRUE(with_places.add(descriptor));
+  EXPECT_FALSE(expect_builtin(with_places));
+}
+
+// What a drive is told of its descriptors is forgotten where a map learns its own.
+TEST(ExpectBuiltin, GivesWayToWhatAMapLearns) {
+  const MatcherConfig config;
+  PlaceMap map(config, {10, values});
+  ASSERT_TRUE(expect_builtin(map));
+  std::vector<float> descriptor(values, 1.0F);
+  ASSERT_TRUE(normalise(descriptor));
+  ASSERT_TRUE(map.learn(descriptor));
+  EXPECT_EQ(map.statistics().frames(), 1U);
+  EXPECT_EQ(map.statistics().mean()[0], static_cast<double>(descriptor[0]));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "seqloop/detector.hpp"
 #include "seqloop/files/npy_file.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace {
 
@@ -18,6 +19,7 @@ void write(const Matrix& query, const Matrix& reference) {
   const bool closing = reference.rows == 0;
   config.use = closing ? seqloop::Use::close_loops : seqloop::Use::localise;
   seqloop::PlaceMap map(config, {closing ? query.rows : reference.rows, query.columns});
+  seqloop::opencv::expect_builtin(map);
   for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.learn(reference.row(i)));
   for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.add(reference.row(i)));
   seqloop::Detector detector(config, map);

@@ -13,6 +13,7 @@
 #include "program/options/verb.hpp"
 #include "python/recordings.hpp"
 #include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::python {
 namespace {
@@ -42,7 +43,9 @@ Map::Map(Chosen chosen)
       method_(std::move(chosen.method)),
       in_file_(chosen.file != nullptr),
       map_(config_, chosen.capacity),
-      file_(std::move(chosen.file)) {}
+      file_(std::move(chosen.file)) {
+  opencv::expect_builtin(map_);
+}
 
 Map::Chosen Map::in_memory(const Capacity& capacity, bool close_loops, const py::kwargs& settings) {
   Faults faults;

@@ -11,6 +11,7 @@
 #include "program/process/interruption.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -45,6 +46,7 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
                       evaluation::ThresholdOn threshold_on, bool with_matrix) {
   const files::Matrix& query = pair.query;
   PlaceMap map(config, {pair.reference ? pair.reference->rows : query.rows, query.columns});
+  opencv::expect_builtin(map);
   if (pair.reference) {
     files::DescriptorSource drive(std::move(*pair.reference));
     program::Progress silent;

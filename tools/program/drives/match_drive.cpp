@@ -11,6 +11,7 @@
 #include "program/drives/map_builder.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -101,6 +102,7 @@ MatchedDrive match_drive(MatcherConfig config, std::optional<files::Matrix> refe
   // A recording is there whole, so that places can be read once for many frames.
   config.frames_at_once = MatcherConfig::most_frames_at_once;
   PlaceMap map(config, {reference ? reference->rows : query.rows, query.columns});
+  opencv::expect_builtin(map);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();

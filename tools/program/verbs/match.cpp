@@ -23,6 +23,7 @@
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/linux/touched_memory.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -96,6 +97,7 @@ void match(const MatchSettings& settings, Faults faults) {
   live::TouchedMemory memory(PlaceMap::bytes_needed(config, capacity));
   live::TouchedMemory working_memory(Detector::bytes_needed(config, capacity));
   PlaceMap map(config, capacity, memory.span(), true);
+  opencv::expect_builtin(map);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();

@@ -33,6 +33,7 @@
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
 #include "seqloop/linux/touched_memory.hpp"
+#include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/pipeline.hpp"
 
 namespace seqloop::program {
@@ -129,6 +130,7 @@ void run(const RunSettings& settings, Faults faults) {
     return live::TouchedMemory(Detector::bytes_needed(setup.config, setup.capacity()));
   });
   PlaceMap map(setup.config, setup.capacity(), memory.span(), true);
+  opencv::expect_builtin(map);
   if (setup.reference) {
     Progress mapping("mapping", setup.reference->frame_count());
     const auto look = [&](const Frame& frame) {
