@@ -19,8 +19,9 @@ namespace seqloop::opencv {
 /// Throws SetupError only when this OpenCV cannot read the model that was built in.
 [[nodiscard]] std::unique_ptr<DnnDescriber> make_builtin_net();
 
-/// Tells a map what values of the built-in descriptor usually are, so that a first drive that closes
-/// loops in it starts from that, and not from its first frame alone (src/README.md, section 5.1).
+/// Tells a map what values of the built-in descriptor usually are, so that a first drive that
+/// closes loops in it starts from that, and not from its first frame alone (src/README.md,
+/// section 5.1).
 /// @return false for a map that has places or statistics already, whose descriptors are of another
 ///   size, or that does not standardise: then nothing has changed
 /// Work: 735 values. Allocates: never.
