@@ -47,7 +47,8 @@ class PlaceMap {
   /// localise in is shown to the map as a whole this way first, where the configuration
   /// standardises, then `add`ed.
   /// @return false when the session has places already, or the descriptor is of another size or not
-  ///   finite, or nothing is to be standardised: then nothing has changed
+  ///   finite, or nothing is to be standardised here (what a drive adds comes standardised): then
+  ///   nothing has changed
   /// Work: D. Allocates: never.
   [[nodiscard]] bool learn(std::span<const float> descriptor) noexcept;
 
@@ -88,7 +89,8 @@ class PlaceMap {
   /// map that was saved do not give theirs to others.
   void count_from(std::uint64_t number) noexcept { order_.count_from(number); }
 
-  /// Takes over the statistics of the newest session: a new drive starts from them.
+  /// Takes over the statistics of the newest session, or what is known of descriptors before there
+  /// is one: a new drive starts from them.
   /// @param mean, variance [D] finite, variances from 0   @param frames 1 or more
   /// @return false when they are not like that, or nothing is to be standardised: then nothing has
   ///   changed

@@ -15,6 +15,7 @@
 #include "cost/instruction_counter.hpp"
 #include "cost/serving_cost.hpp"
 #include "cost/synthetic_picture.hpp"
+#include "program/options/picture_margin.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/opencv/threads.hpp"
@@ -60,7 +61,7 @@ void count_pictures(const InstructionCounter& counter, std::string_view name,
                     Describer& describer) {
   const std::vector<std::uint8_t> jpeg = synthetic_jpeg();
   const RawPicture raw{jpeg, synthetic_width, synthetic_height, 0, RawFormat::mjpg};
-  turbojpeg::MjpgDecoder decoder(describer.needs());
+  turbojpeg::MjpgDecoder decoder(program::with_margin(describer.needs()));
   Image picture;
   std::vector<float> descriptor(describer.size());
   const auto grab = [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "program/drives/camera_decoder.hpp"
 
-#include "program/options/camera_options.hpp"
+#include "program/options/picture_margin.hpp"
 
 namespace seqloop::program {
 

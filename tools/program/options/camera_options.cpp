@@ -5,6 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "program/options/picture_margin.hpp"
 #include "seqloop/linux/pixel_format.hpp"
 
 namespace seqloop::program {
@@ -24,15 +25,6 @@ void add_camera_options(OptionTable& options, CameraSettings& settings) {
   options.add({"size", ValueKind::size,
                "of the pictures: WxH, exactly [the cheapest that the descriptor can use]",
                [&settings](std::string_view value) { settings.size = parse_size(value); }});
-}
-
-PictureNeeds with_margin(const PictureNeeds& needs) {
-  constexpr int margin = 4;
-  constexpr int enough_width = 640;
-  constexpr int enough_height = 480;
-  return {std::max(needs.width, std::min(margin * needs.width, enough_width)),
-          std::max(needs.height, std::min(margin * needs.height, enough_height)),
-          needs.gray_is_enough};
 }
 
 live::CameraOptions camera_options(const CameraSettings& settings, const std::string& path,

@@ -22,12 +22,6 @@ struct CameraSettings {
 /// too. @param settings lives as long as the table
 void add_camera_options(OptionTable& options, CameraSettings& settings);
 
-/// The size at which a camera's pictures are asked for and decoded: four times what the describer
-/// brings them to, but no more than 640x480 unless it needs more. Then a camera sees a place as a
-/// recording does: of 180 answers on Gardens Point (ds 20, MJPG, built-in descriptor), 10 are
-/// others than with whole pictures at the very size, 8 at twice, 2 at four times the size.
-[[nodiscard]] PictureNeeds with_margin(const PictureNeeds& needs);
-
 /// @param needs the describer's
 /// @param fps frames a second, at least; at 3 intervals without a frame, but not before a second, a
 ///   camera counts as silent
