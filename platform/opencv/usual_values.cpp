@@ -15,10 +15,9 @@ struct Statistics {
 };
 
 constexpr Statistics usual = [] {
-  constexpr double unit = 1e-4;
   Statistics made;
   for (std::size_t d = 0; d < usual_means.size(); ++d) {
-    const double mean = unit * usual_means[d];
+    const double mean = usual_unit * usual_means[d];
     made.mean[d] = mean;
     made.variance[d] = usual_deviation * mean * usual_deviation * mean;
   }

@@ -10,7 +10,10 @@ namespace seqloop::opencv {
 /// The deviation of a value, in means.
 inline constexpr double usual_deviation = 0.67;
 
-/// The mean of each value of the built-in descriptor, orientation x row x column, in 1 / 10,000.
+/// What the means below are counted in.
+inline constexpr double usual_unit = 0.0001;
+
+/// The mean of each value of the built-in descriptor, orientation x row x column.
 inline constexpr std::array<std::uint16_t, 735> usual_means{
     290, 272, 242, 223, 242, 272, 290, 310, 308, 268, 234, 268, 308, 310, 322, 330, 304, 281, 304,
     330, 322, 298, 304, 308, 304, 308, 304, 298, 237, 238, 273, 313, 273, 238, 237, 203, 193, 251,

@@ -5,11 +5,11 @@
 Why: a drive that closes loops subtracts from each value its mean so far (src/README.md, section 5.1). Its first frames
 cannot tell the mean, and were standardised by another than those that come back to them later.
 
-  make_usual_values.py DRIVE.npy...
+  make_usual_values.py DRIVE.npy... | clang-format > ../detail/usual_values.hpp
 
 DRIVE.npy are descriptors of drives, [frames, 735], of `seqloop describe`; each drive counts the same. A picture and its
-mirror image are as likely, so the mean of an orientation in a cell is that of the mirrored ones, too. Variances follow the
-means: the deviation is DEVIATION times the mean, which is what it is on average on the drives below.
+mirror image are as likely, so the mean of an orientation in a cell is that of the mirrored ones, too. Variances follow
+the means: the deviation is as many means everywhere as it is on average over the drives.
 
 What is built in was made of Gardens Point (day_left, night_right), 2,400 frames of Nordland (summer, winter), and
 garage_laps.
@@ -49,7 +49,10 @@ namespace seqloop::opencv {{
 /// The deviation of a value, in means.
 inline constexpr double usual_deviation = {deviation.mean() / means.mean():.2f};
 
-/// The mean of each value of the built-in descriptor, orientation x row x column, in 1 / {UNIT:,}.
+/// What the means below are counted in.
+inline constexpr double usual_unit = {1 / UNIT:g};
+
+/// The mean of each value of the built-in descriptor, orientation x row x column.
 inline constexpr std::array<std::uint16_t, {means.size}> usual_means{{
 {textwrap.indent(textwrap.fill(numbers, 96), "    ")}}};
 

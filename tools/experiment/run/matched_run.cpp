@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "experiment/run/matrix_recorder.hpp"
-#include "program/drives/map_builder.hpp"
+#include "program/drives/match_drive.hpp"
 #include "program/process/interruption.hpp"
 #include "seqloop/detector.hpp"
-#include "seqloop/files/descriptor_source.hpp"
-#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -45,13 +43,7 @@ void add(std::vector<evaluation::Answer>& all, std::span<const Answer> answers,
 MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
                       evaluation::ThresholdOn threshold_on, bool with_matrix) {
   const files::Matrix& query = pair.query;
-  PlaceMap map(config, {pair.reference ? pair.reference->rows : query.rows, query.columns});
-  opencv::expect_builtin(map);
-  if (pair.reference) {
-    files::DescriptorSource drive(std::move(*pair.reference));
-    program::Progress silent;
-    fill_map(map, drive, nullptr, config, silent);
-  }
+  PlaceMap map = program::map_for(config, std::move(pair.reference), query);
   Detector detector(config, map);
   MatrixRecorder recorder(query.rows);
   std::vector<float> column;

@@ -97,18 +97,23 @@ MatchedDrive match_frames(Detector& detector, const MatcherConfig& config,
   return matched;
 }
 
-MatchedDrive match_drive(MatcherConfig config, std::optional<files::Matrix> reference,
-                         const files::Matrix& query, const MatchWatch& watch) {
-  // A recording is there whole, so that places can be read once for many frames.
-  config.frames_at_once = MatcherConfig::most_frames_at_once;
+PlaceMap map_for(const MatcherConfig& config, std::optional<files::Matrix> reference,
+                 const files::Matrix& query) {
   PlaceMap map(config, {reference ? reference->rows : query.rows, query.columns});
   opencv::expect_builtin(map);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
-    reference.reset();
     Progress silent;
     (void)fill_map(map, drive, nullptr, config, silent);
   }
+  return map;
+}
+
+MatchedDrive match_drive(MatcherConfig config, std::optional<files::Matrix> reference,
+                         const files::Matrix& query, const MatchWatch& watch) {
+  // A recording is there whole, so that places can be read once for many frames.
+  config.frames_at_once = MatcherConfig::most_frames_at_once;
+  PlaceMap map = map_for(config, std::move(reference), query);
   Detector detector(config, map);
   return match_frames(detector, config, query, watch);
 }

@@ -46,6 +46,11 @@ struct MatchWatch {
 void check_match(Faults& faults, const MatcherConfig& config, const files::Matrix* reference,
                  const files::Matrix& query);
 
+/// The map that a recording is matched in: of the reference or, without one, empty, with room for
+/// the recording itself.
+[[nodiscard]] PlaceMap map_for(const MatcherConfig& config, std::optional<files::Matrix> reference,
+                               const files::Matrix& query);
+
 /// Steps through a recording whose rows are of unit length where Euclid compares.
 /// @param config the detector's; `frames_at_once` of them are taken together
 [[nodiscard]] MatchedDrive match_frames(Detector& detector, const MatcherConfig& config,
