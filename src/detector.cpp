@@ -266,10 +266,7 @@ bool Detector::take_query(std::span<const float> descriptor) noexcept {
     queries_.push(descriptor);
     return true;
   }
-  if (statistics_.frames() == 0) {
-    statistics_.start_flat(descriptor, config_.standardisation.prior_frames);
-  }
-  statistics_.follow(descriptor, config_.standardisation.horizon);
+  statistics_.follow(descriptor, config_.standardisation);
   statistics_.standardise(descriptor, standardised_);
   queries_.push(standardised_);
   return true;

@@ -24,8 +24,8 @@ constexpr double coming_at_first = 0.02;
 
 // How much the best wrong sums vary at least. A drive through new places has wrong rows in store
 // that do better than those it has met.
-constexpr double least_variance = 0.25;
-constexpr double least_variance_of_new_places = 1.5;
+constexpr double least_variance = 1.25;
+constexpr double least_variance_of_new_places = 5.0;
 
 constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more

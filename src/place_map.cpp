@@ -49,9 +49,10 @@ PlaceMap::PlaceMap(const MatcherConfig& config, const Capacity& capacity, ArenaM
 PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& capacity,
                    ArenaMemory&& memory)
     : memory_(std::move(memory)),
-      standardises_(config.standardisation.on),
+      standardisation_(config.standardisation),
       full_map_(config.full_map),
       statistics_(arena, capacity.descriptor_size),
+      added_(arena, learns(config, capacity) ? capacity.descriptor_size : 0),
       order_(arena, capacity.places, capacity.sessions),
       rows_(arena, {"places", "lengths of places", "sketches of places"},
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
@@ -84,11 +85,13 @@ bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
 
 bool PlaceMap::add(std::span<const float> descriptor) noexcept {
   if (size() == capacity() || !fits(descriptor)) return false;
-  if (!standardised_.empty() && statistics_.frames() != 0) {
-    statistics_.standardise(descriptor, standardised_);
+  const std::size_t first = order_.session(order_.sessions() - 1).first;
+  if (!standardised_.empty()) {
+    if (first == size()) added_.start_from(statistics_, standardisation_.prior_frames);
+    added_.follow(descriptor, standardisation_);
+    added_.standardise(descriptor, standardised_);
     descriptor = standardised_;
   }
-  const std::size_t first = order_.session(order_.sessions() - 1).first;
   const std::uint64_t frame = first == size() ? 0 : order_.frame(size() - 1) + 1;
   rows_.store(append(frame, order_.next_number()), descriptor);
   space(size() - 1);
@@ -138,7 +141,7 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
 
 bool PlaceMap::set_statistics(std::span<const double> mean, std::span<const double> variance,
                               std::uint64_t frames) noexcept {
-  if (!standardises_ || frames == 0) return false;
+  if (!standardisation_.on || frames == 0) return false;
   return statistics_.restore(mean, variance, frames);
 }
 

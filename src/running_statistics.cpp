@@ -20,7 +20,9 @@ void RunningStatistics::observe(std::span<const float> descriptor) noexcept {
   observe_weighted(descriptor, 1.0 / static_cast<double>(frames_ + 1));
 }
 
-void RunningStatistics::follow(std::span<const float> descriptor, std::size_t horizon) noexcept {
+void RunningStatistics::follow(std::span<const float> descriptor,
+                               const Standardisation& how) noexcept {
+  if (frames_ == 0) start_flat(descriptor, how.prior_frames);
   // Two frames that have nothing to do with each other are on average twice the sum of the
   // variances apart, squared. A tenth of that is a scene that has changed.
   constexpr double changed = 0.1 * 2.0;
@@ -30,7 +32,7 @@ void RunningStatistics::follow(std::span<const float> descriptor, std::size_t ho
     return difference * difference;
   });
   if (apart < changed * variances_) return;
-  observe_weighted(descriptor, 1.0 / static_cast<double>(std::min(frames_ + 1, horizon)));
+  observe_weighted(descriptor, 1.0 / static_cast<double>(std::min(frames_ + 1, how.horizon)));
   std::ranges::copy(descriptor, last_taken_.begin());
 }
 
@@ -79,6 +81,7 @@ void RunningStatistics::sum_up() noexcept {
 void RunningStatistics::start_from(const RunningStatistics& other, std::size_t frames) noexcept {
   std::ranges::copy(other.mean_, mean_.begin());
   std::ranges::copy(other.variance_, variance_.begin());
+  std::ranges::fill(last_taken_, 0.0F);
   sum_up();
   frames_ = std::min(frames, other.frames_);
 }

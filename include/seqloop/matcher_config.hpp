@@ -70,11 +70,12 @@ struct Standardisation {
 
   /// Divide each feature by its deviation around its running mean. Off: descriptors as they come.
   bool on = true;
-  /// The weight, in frames, of what a drive starts from: the map's statistics or, where it has
-  /// none, the first frame's; >= 1.
-  std::size_t prior_frames = 20;
-  /// A frame never weighs less than 1/horizon, so that the statistics follow the day; >= 1, frames.
-  std::size_t horizon = 100;
+  /// The weight, in frames, of what a drive starts from, one that becomes the map as well: the
+  /// map's statistics or, where it has none, the first frame's; >= 1.
+  std::size_t prior_frames = 15;
+  /// A frame never weighs less than 1/horizon, so that the statistics follow light and
+  /// surroundings; >= 1, frames.
+  std::size_t horizon = 30;
 };
 
 /// Everything a detector can be told, with the paper's values (Table 2) where it has any.

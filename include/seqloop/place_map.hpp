@@ -43,20 +43,21 @@ class PlaceMap {
   /// Whether another session can be begun.
   [[nodiscard]] bool has_room_for_session() const noexcept { return order_.has_room_for_session(); }
 
-  /// Takes a place into the statistics by which all of its session are standardised. A drive to
-  /// localise in is shown to the map as a whole this way first, where the configuration
-  /// standardises, then `add`ed.
+  /// Takes a place into the statistics that its session, and a drive to be localised in it, start
+  /// from. Where nothing is known of descriptors (`set_statistics`), a drive is shown to the map as
+  /// a whole this way first, then `add`ed: so its first places are standardised as well as others.
   /// @return false when the session has places already, or the descriptor is of another size or not
   ///   finite, or nothing is to be standardised here (what a drive adds comes standardised): then
   ///   nothing has changed
   /// Work: D. Allocates: never.
   [[nodiscard]] bool learn(std::span<const float> descriptor) noexcept;
 
-  /// Appends a place; standardised, if the session has learnt.
+  /// Appends a place; standardised, if that is on, as a drive's frames are: by what the session has
+  /// shown so far.
   /// @param descriptor [D]; without NaN or infinity
   /// @return false when the map is full, or the descriptor is of another size or not finite: then
   ///   nothing has changed
-  /// Work: 5 D. Allocates: never.
+  /// Work: 9 D, and the sketch. Allocates: never.
   [[nodiscard]] bool add(std::span<const float> descriptor) noexcept;
 
   /// A place as it was saved.
@@ -178,10 +179,11 @@ class PlaceMap {
                                                              const Saved& place) noexcept;
 
   ArenaMemory memory_;
-  bool standardises_;
+  Standardisation standardisation_;
   FullMap full_map_;
   bool learning_ = false;  // the newest session, which has no place yet
   RunningStatistics statistics_;
+  RunningStatistics added_;  // of the places that are added, as a drive's
   PlaceOrder order_;
   DescriptorRows rows_;
   std::span<float> standardised_;         // [D]

@@ -224,7 +224,7 @@ class NaiveBelief {
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
     evidence = {std::log(big / (1.0 - big)),
-                (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 0.25 : 1.5)),
+                (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 5.0)),
                 best->second.clear,
                 std::log(1.0 + best->second.age),
                 0.0,

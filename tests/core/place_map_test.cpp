@@ -3,6 +3,7 @@
 #include "seqloop/place_map.hpp"
 
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "core/matcher.hpp"
@@ -35,6 +36,59 @@ TEST(PlaceMap, TakesOnlyWhatFits) {
   EXPECT_FALSE(map.learn(std::vector<float>{1.0F, 0.0F}))
       << "places would not be standardised by it";
   EXPECT_TRUE(map.add(std::vector<float>{0.0F, 1.0F}));
+}
+
+std::vector<std::vector<float>> random_drive(unsigned seed, float mean) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(mean, 1.0F);
+  std::vector<std::vector<float>> drive(60, std::vector<float>(5));
+  for (auto& frame : drive) {
+    for (float& value : frame) value = normal(random);
+  }
+  return drive;
+}
+
+/// Places are kept as what `known` makes of them, which moves on with them.
+void expect_as_a_drive(const PlaceMap& map, std::size_t first, RunningStatistics& known,
+                       const std::vector<std::vector<float>>& drive) {
+  std::vector<float> wanted(5);
+  std::vector<float> kept(map.rows().restored_size());
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    known.follow(drive[i], Standardisation{});
+    known.standardise(drive[i], wanted);
+    map.rows().restore(map.order().slot(first + i), kept);
+    for (std::size_t d = 0; d < wanted.size(); ++d) EXPECT_EQ(kept[d], wanted[d]) << i;
+  }
+}
+
+TEST(PlaceMap, PlacesAreStandardisedByWhatTheirSessionHasShown) {
+  MatcherConfig config;
+  config.arithmetic = Arithmetic::float32;
+  PlaceMap map(config, {300, 5, 3});
+  TestArena memory;
+
+  const auto unknown = random_drive(1, 3.0F);
+  for (const auto& place : unknown) ASSERT_TRUE(map.add(place));
+  RunningStatistics from_the_first(memory.arena, 5);
+  expect_as_a_drive(map, 0, from_the_first, unknown);
+
+  ASSERT_TRUE(map.begin_session());
+  const auto learnt = random_drive(2, -4.0F);
+  RunningStatistics whole(memory.arena, 5);
+  for (const auto& place : learnt) {
+    ASSERT_TRUE(map.learn(place));
+    whole.observe(place);
+  }
+  for (const auto& place : learnt) ASSERT_TRUE(map.add(place));
+  RunningStatistics from_the_whole(memory.arena, 5);
+  from_the_whole.start_from(whole, Standardisation{}.prior_frames);
+  expect_as_a_drive(map, unknown.size(), from_the_whole, learnt);
+
+  ASSERT_TRUE(map.begin_session());
+  ASSERT_TRUE(map.add(learnt.back()));
+  RunningStatistics anew(memory.arena, 5);
+  anew.start_from(whole, Standardisation{}.prior_frames);
+  expect_as_a_drive(map, unknown.size() + learnt.size(), anew, {learnt.back()});
 }
 
 }  // namespace

@@ -12,6 +12,12 @@
 namespace seqloop {
 namespace {
 
+Standardisation within(std::size_t horizon) {
+  Standardisation how;
+  how.horizon = horizon;
+  return how;
+}
+
 TEST(RunningStatistics, EqualTheBatchDefinition) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 3);
@@ -88,7 +94,7 @@ TEST(RunningStatistics, StartFromAnotherDriveAndMoveOn) {
   query.start_from(map, 2);
   EXPECT_EQ(query.frames(), 2U);
   EXPECT_EQ(query.mean()[0], 2.0);
-  query.follow(std::vector<float>{5.0F}, 100);
+  query.follow(std::vector<float>{5.0F}, within(100));
   EXPECT_DOUBLE_EQ(query.mean()[0], 3.0) << "one frame against a prior of two";
   EXPECT_DOUBLE_EQ(query.variance()[0], (2.0 / 3.0) * (1.0 + 9.0 / 3.0));
   query.start_from(map, 99);
@@ -99,10 +105,10 @@ TEST(RunningStatistics, ForgetBeyondTheHorizon) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 1);
   for (int i = 0; i < 1000; ++i) {
-    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F}, 10);
+    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F}, within(10));
   }
   for (int i = 0; i < 100; ++i) {
-    statistics.follow(std::vector<float>{i % 2 == 0 ? 8.0F : 12.0F}, 10);
+    statistics.follow(std::vector<float>{i % 2 == 0 ? 8.0F : 12.0F}, within(10));
   }
   EXPECT_NEAR(statistics.mean()[0], 10.0, 0.2);
 }
@@ -111,22 +117,26 @@ TEST(RunningStatistics, AHaltTeachesThemNothing) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 2);
   for (int i = 0; i < 50; ++i) {
-    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F, i % 3 == 0 ? 2.0F : -1.0F}, 20);
+    statistics.follow(std::vector<float>{i % 2 == 0 ? -1.0F : 1.0F, i % 3 == 0 ? 2.0F : -1.0F},
+                      within(20));
   }
-  statistics.follow(std::vector<float>{1.5F, 1.5F}, 20);
+  statistics.follow(std::vector<float>{1.5F, 1.5F}, within(20));
   const double before = statistics.mean()[0];
-  for (int i = 0; i < 500; ++i) statistics.follow(std::vector<float>{1.5F, 1.51F}, 20);
+  for (int i = 0; i < 500; ++i) statistics.follow(std::vector<float>{1.5F, 1.51F}, within(20));
   EXPECT_EQ(statistics.mean()[0], before);
 }
 
 TEST(RunningStatistics, StartFlatFromAFirstFrame) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 4);
-  statistics.start_flat(std::vector<float>{1.0F, 1.0F, 3.0F, 3.0F}, 20);
+  Standardisation how;
+  how.prior_frames = 19;
+  statistics.follow(std::vector<float>{1.0F, 1.0F, 3.0F, 3.0F}, how);
   EXPECT_EQ(statistics.frames(), 20U);
   for (std::size_t d = 0; d < 4; ++d) {
-    EXPECT_EQ(statistics.mean()[d], 2.0);
-    EXPECT_EQ(statistics.variance()[d], 1.0);
+    const double off = d < 2 ? -1.0 : 1.0;
+    EXPECT_NEAR(statistics.mean()[d], 2.0 + off / 20.0, 1e-12) << "one frame beside 19 flat ones";
+    EXPECT_NEAR(statistics.variance()[d], 0.95 * (1.0 + 1.0 / 20.0), 1e-12);
   }
 }
 

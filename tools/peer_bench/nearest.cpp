@@ -47,23 +47,23 @@ class Nearest : public Peer {
 
   void learn(const Frame& frame) override {
     if (closing_ || !standardise_) return;
-    statistics(frame.descriptor.size())->observe(frame.descriptor);
+    if (!learnt_) learnt_.emplace(frame.descriptor.size());
+    (*learnt_)->observe(frame.descriptor);
   }
 
-  void learnt() override { mapping_ = !closing_; }
+  void learnt() override {
+    mapping_ = !closing_;
+    start();
+  }
 
-  /// As our detector does: a map by all of itself, a drive by what it was so far.
+  /// As our map and our detector do: a drive by what it was so far.
   void see(const Frame& frame) override {
     const std::span<const float> row = frame.descriptor;
     now_.assign(row.begin(), row.end());
     if (!standardise_) return;
-    Statistics& known = statistics(row.size());
-    const Standardisation usual;
-    if (!mapping_) {
-      if (known->frames() == 0) known->start_flat(row, usual.prior_frames);
-      known->follow(row, usual.horizon);
-    }
-    static_cast<void>(known->standardise(row, now_));
+    if (!statistics_) statistics_.emplace(row.size());
+    (*statistics_)->follow(row, Standardisation{});
+    static_cast<void>((*statistics_)->standardise(row, now_));
   }
 
   Guess find() override {
@@ -104,10 +104,7 @@ class Nearest : public Peer {
 
   void begin() override {
     mapping_ = false;
-    if (!standardise_ || closing_) return;
-    Statistics map = std::move(*statistics_);
-    statistics_.emplace(now_.size());
-    (*statistics_)->start_from(*map, Standardisation{}.prior_frames);
+    start();
   }
 
  private:
@@ -115,9 +112,11 @@ class Nearest : public Peer {
     return std::sqrt(std::max(0.0, static_cast<double>(square)));
   }
 
-  Statistics& statistics(std::size_t size) {
-    if (!statistics_) statistics_.emplace(size);
-    return *statistics_;
+  /// A drive starts from what was learnt.
+  void start() {
+    if (!learnt_) return;
+    statistics_.emplace((*learnt_)->mean().size());
+    (*statistics_)->start_from(**learnt_, Standardisation{}.prior_frames);
   }
 
   void make_index(std::size_t size) {
@@ -135,6 +134,7 @@ class Nearest : public Peer {
   bool closing_;
   std::size_t exclude_;
   bool mapping_ = false;
+  std::optional<Statistics> learnt_;
   std::optional<Statistics> statistics_;
   std::vector<float> now_;
   std::deque<std::vector<float>> waiting_;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
 
@@ -22,12 +23,10 @@ class RunningStatistics {
 
   /// Moves on with a drive: the same with a weight of at least 1 / horizon, so that older frames
   /// fade. A frame that looks like the last one that was taken in is left out, so that a robot that
-  /// stands still does not forget the drive.
-  void follow(std::span<const float> descriptor, std::size_t horizon) noexcept;
-
-  /// Starts a drive that nothing is known of from its first frame, as if that had been seen for
-  /// `frames` frames: every feature gets the mean and the variance of all of its values.
-  void start_flat(std::span<const float> descriptor, std::size_t frames) noexcept;
+  /// stands still does not forget the drive. One that nothing is known of starts from its first
+  /// frame, as if that had been seen for `prior_frames`: every feature gets the mean and the
+  /// variance of all of its values.
+  void follow(std::span<const float> descriptor, const Standardisation& how) noexcept;
 
   /// Starts from what another drive knows, as if that had been seen for `frames` frames (no more
   /// than it really was).
@@ -56,6 +55,7 @@ class RunningStatistics {
   [[nodiscard]] std::span<const double> variance() const noexcept { return variance_; }
 
  private:
+  void start_flat(std::span<const float> descriptor, std::size_t frames) noexcept;
   void observe_weighted(std::span<const float> descriptor, double weight) noexcept;
   void sum_up() noexcept;
 

@@ -55,7 +55,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   }
   progress.done();
   if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
-  if (config.standardisation.on) {
+  if (config.standardisation.on && map.statistics().frames() == 0) {
     for (const std::span<const float> place : places) static_cast<void>(map.learn(place));
   }
   for (const std::span<const float> place : places) static_cast<void>(map.add(place));

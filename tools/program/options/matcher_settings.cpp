@@ -138,9 +138,9 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        "weigh features by their running statistics [on; off under --paper and for seqslam]",
        [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
   options.count("standardise-prior", config.standardisation.prior_frames,
-                "frames that the map's statistics count for in a new drive [20]");
+                "frames that what a drive starts from counts for [15]");
   options.count("standardise-horizon", config.standardisation.horizon,
-                "frames after which statistics have mostly moved on [100]");
+                "frames after which statistics have mostly moved on [30]");
   options.add(
       {"difference", ValueKind::text,
        "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",
