@@ -10,11 +10,12 @@
 
 namespace seqloop {
 
-RunningStatistics::RunningStatistics(Arena& arena, std::size_t descriptor_size)
-    : mean_(arena.take<double>("mean of each feature", descriptor_size)),
-      variance_(arena.take<double>("variance of each feature", descriptor_size)),
-      deviation_(arena.take<float>("deviation of each feature", descriptor_size)),
-      last_taken_(arena.take<float>("last frame that moved the statistics", descriptor_size)) {}
+RunningStatistics::RunningStatistics(Arena& arena, std::size_t descriptor_size,
+                                     const StatisticsNames& names)
+    : mean_(arena.take<double>(names.mean, descriptor_size)),
+      variance_(arena.take<double>(names.variance, descriptor_size)),
+      deviation_(arena.take<float>(names.deviation, descriptor_size)),
+      last_taken_(arena.take<float>(names.last_taken, descriptor_size)) {}
 
 void RunningStatistics::observe(std::span<const float> descriptor) noexcept {
   observe_weighted(descriptor, 1.0 / static_cast<double>(frames_ + 1));

@@ -4,18 +4,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
 
+/// What the buffers of some statistics are called in a plan.
+struct StatisticsNames {
+  std::string_view mean = "mean of each feature";
+  std::string_view variance = "variance of each feature";
+  std::string_view deviation = "deviation of each feature";
+  std::string_view last_taken = "last frame that moved the statistics";
+};
+
 /// Mean and variance of every feature over a drive, one frame at a time, in fixed memory.
 /// Source: src/README.md, section 5.1.
 class RunningStatistics {
  public:
   /// Allocates: from the arena only, 24 bytes a feature.
-  RunningStatistics(Arena& arena, std::size_t descriptor_size);
+  RunningStatistics(Arena& arena, std::size_t descriptor_size, const StatisticsNames& names = {});
 
   /// Takes a frame in with the weight 1 / (frames so far + 1): exactly the mean and the variance of
   /// all frames.
