@@ -29,10 +29,10 @@ using std::chrono::milliseconds;
 constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t start = 1'700'000'000 * second + 5;
 
-/// On the loopback interface, in a domain of this process's own. The scripts take theirs from 100
-/// on; some run for a minute, beside many processes.
+/// On the loopback interface, in a domain of this process's own. Scripts, of which some run for a
+/// minute, take theirs from below.
 Network own_network() {
-  const auto domain = static_cast<std::uint32_t>(1 + getpid() % 99);
+  const auto domain = static_cast<std::uint32_t>(61 + getpid() % 38);
   return {domain, network([](const char*) { return nullptr; }).configuration +
                       ",<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" "
                       "multicast=\"true\"/></Interfaces></General></Domain></CycloneDDS>"};
