@@ -14,9 +14,9 @@ START_S = 1_700_000_000  # of stamps
 
 @functools.cache
 def own_domain() -> tuple[int, object]:
-    """One that no other script has, and the lock on it, which this process holds as long as it lives. Those of the
-    camera's tests lie above; higher ones have ports that the system gives to anybody."""
-    domains = 60
+    """One that no other test talks in, and the lock on it, which this process holds as long as it lives. Higher ones
+    have ports that the system gives to anybody."""
+    domains = 98
     for i in range(domains):
         domain = 1 + (os.getpid() + i) % domains
         lock = open(pathlib.Path(tempfile.gettempdir()) / f"seqloop-test-domain-{domain}", "a", encoding="ascii")

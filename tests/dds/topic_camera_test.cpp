@@ -4,13 +4,17 @@
 #include "seqloop/dds/topic_camera.hpp"
 
 #include <dds/dds.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,13 +33,30 @@ using std::chrono::milliseconds;
 constexpr std::int64_t second = 1'000'000'000;
 constexpr std::int64_t start = 1'700'000'000 * second + 5;
 
-/// On the loopback interface, in a domain of this process's own. Scripts, of which some run for a
-/// minute, take theirs from below.
+/// A domain that no other test talks in, as ros.py takes it: this process locks it as long as it
+/// lives. Higher ones have ports that the system gives to anybody.
+std::uint32_t own_domain() {
+  static const std::uint32_t own = [] {
+    constexpr std::uint32_t domains = 98;
+    const std::string name = std::filesystem::temp_directory_path() / "seqloop-test-domain-";
+    for (std::uint32_t i = 0; i < domains; ++i) {
+      const std::uint32_t domain = 1 + (static_cast<std::uint32_t>(getpid()) + i) % domains;
+      const int lock =
+          open((name + std::to_string(domain)).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+      if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0) return domain;
+      if (lock >= 0) close(lock);
+    }
+    throw std::runtime_error("all domains are taken by other tests");
+  }();
+  return own;
+}
+
+/// On the loopback interface, in a domain of this process's own.
 Network own_network() {
-  const auto domain = static_cast<std::uint32_t>(61 + getpid() % 38);
-  return {domain, network([](const char*) { return nullptr; }).configuration +
-                      ",<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" "
-                      "multicast=\"true\"/></Interfaces></General></Domain></CycloneDDS>"};
+  return {own_domain(),
+          network([](const char*) { return nullptr; }).configuration +
+              ",<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" "
+              "multicast=\"true\"/></Interfaces></General></Domain></CycloneDDS>"};
 }
 
 /// The publishers' side: to DDS the same domain, but with sockets of its own, so that messages go
