@@ -4,24 +4,22 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <utility>
 
+#include "program/drives/match_drive.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/files/npy_file.hpp"
-#include "seqloop/opencv/builtin_describer.hpp"
 
 namespace {
 
 using seqloop::files::Matrix;
 
-void write(const Matrix& query, const Matrix& reference) {
+void write(const Matrix& query, std::optional<Matrix> reference) {
   seqloop::MatcherConfig config;
-  const bool closing = reference.rows == 0;
-  config.use = closing ? seqloop::Use::close_loops : seqloop::Use::localise;
-  seqloop::PlaceMap map(config, {closing ? query.rows : reference.rows, query.columns});
-  seqloop::opencv::expect_builtin(map);
-  for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.learn(reference.row(i)));
-  for (std::size_t i = 0; i < reference.rows; ++i) static_cast<void>(map.add(reference.row(i)));
+  config.use = reference ? seqloop::Use::localise : seqloop::Use::close_loops;
+  seqloop::PlaceMap map = seqloop::program::map_for(config, std::move(reference), query);
   seqloop::Detector detector(config, map);
   std::puts("frame,place,odds,lead,contrast,age,margin");
   for (std::size_t i = 0; i < query.rows; ++i) {
@@ -42,8 +40,9 @@ int main(int count, char** words) {
     return 2;
   }
   try {
-    write(seqloop::files::read_npy(all[1]),
-          count == 3 ? seqloop::files::read_npy(all[2]) : Matrix{});
+    std::optional<Matrix> reference;
+    if (count == 3) reference = seqloop::files::read_npy(all[2]);
+    write(seqloop::files::read_npy(all[1]), std::move(reference));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "seqloop-evidence: %s\n", error.what());
     return 2;
