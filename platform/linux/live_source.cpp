@@ -101,7 +101,12 @@ void LiveSource::drop(Captured& captured) noexcept {
 }
 
 void LiveSource::pass_on_event(const Captured& captured) noexcept {
-  if (captured.what != Capture::end) silences_.fetch_add(1, std::memory_order_relaxed);
+  if (captured.what != Capture::end) {
+    silences_.fetch_add(1, std::memory_order_relaxed);
+  } else if (captured.index > captured.delivered) {
+    // No frame comes any more that would tell of those lost after the last one.
+    lost_.store(captured.index - captured.delivered, std::memory_order_relaxed);
+  }
   Captured& event = events_.writing();
   event = captured;
   event.delivered = delivered_.load(std::memory_order_relaxed);

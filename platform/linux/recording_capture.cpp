@@ -64,9 +64,12 @@ void RecordingCapture::read_ahead() noexcept {
   ahead_->time_s = newest_time_s_ = std::max(newest_time_s_, frame.time_s);
   ahead_->remark.assign({frame.remark});
   ahead_->fault.assign({frame.fault});
+  if (grab == Grab::frame || grab == Grab::unreadable) made_ = frame.index + 1;
   switch (grab) {
     case Grab::end:
       ahead_->what = Capture::end;
+      ahead_->index = made_;
+      ahead_->delivered = delivered_;
       return;
     case Grab::silent:
       ahead_->what = Capture::silent;

@@ -153,6 +153,21 @@ TEST(RecordingCapture, FramesThatTakeTooLongToReadArriveAfterTheirStamp) {
   EXPECT_EQ(third.stamp - second.stamp, milliseconds(40));
 }
 
+TEST(RecordingCapture, TheEndTellsOfFramesThatWereLostBeforeIt) {
+  std::vector<Recorded> frames = at_25_hz(12);
+  frames[9].reading = milliseconds(500);
+  Player player(std::move(frames));
+  for (std::uint64_t index = 0; index < 9; ++index) {
+    const Captured captured = player.next();
+    ASSERT_EQ(captured.index, index);
+    player.give_back(captured);
+  }
+  const Captured end = player.next();
+  ASSERT_EQ(end.what, Capture::end) << "the last three came too late";
+  EXPECT_EQ(end.index, 12U);
+  EXPECT_EQ(end.delivered, 9U);
+}
+
 TEST(RecordingCapture, UnreadableFramesAreBadOnesAndKeepTheirTime) {
   std::vector<Recorded> frames = at_25_hz(3);
   frames[1].width = 0;

@@ -48,6 +48,7 @@ class RecordingCapture : public CaptureDevice {
   std::optional<Nanoseconds> start_;  // when the recording's second 0 was
   std::optional<Captured> ahead_;     // read, not yet due
   double newest_time_s_ = 0.0;
+  std::uint64_t made_ = 0;  // frames, by their numbers
   std::uint64_t delivered_ = 0;
   Nanoseconds last_stamp_{0};
   int passed_over_ = 0;  // in a row
