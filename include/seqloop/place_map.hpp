@@ -46,6 +46,7 @@ class PlaceMap {
   /// Takes a place into the statistics that its session, and a drive to be localised in it, start
   /// from. Where nothing is known of descriptors (`set_statistics`), a drive is shown to the map as
   /// a whole this way first, then `add`ed: so its first places are standardised as well as others.
+  /// A detector that standardises refuses a map with places of which it was told neither.
   /// @return false when the session has places already, or the descriptor is of another size or not
   ///   finite, or nothing is to be standardised here (what a drive adds comes standardised): then
   ///   nothing has changed
