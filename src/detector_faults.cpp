@@ -30,11 +30,11 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back({"map", "it was made for another configuration",
                       "give both the same arithmetic, difference, relocalising and full_map"});
   }
-  if (map.size() != 0 && config.standardisation.on != (map.statistics().frames() != 0)) {
-    faults.push_back({"map",
-                      config.standardisation.on ? "its places were not standardised"
-                                                : "its places were standardised",
-                      "standardise both the map and the query, or neither"});
+  if (map.standardises() != config.standardisation.on) {
+    faults.push_back(
+        {"map",
+         map.standardises() ? "its places are standardised" : "its places are not standardised",
+         "standardise both the map and the query, or neither"});
   }
   return faults;
 }

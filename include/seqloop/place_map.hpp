@@ -44,9 +44,9 @@ class PlaceMap {
   [[nodiscard]] bool has_room_for_session() const noexcept { return order_.has_room_for_session(); }
 
   /// Takes a place into the statistics that its session, and a drive to be localised in it, start
-  /// from. Where nothing is known of descriptors (`set_statistics`), a drive is shown to the map as
-  /// a whole this way first, then `add`ed: so its first places are standardised as well as others.
-  /// A detector that standardises refuses a map with places of which it was told neither.
+  /// from. Where nothing is known of descriptors (`set_statistics`), a drive may be shown to the
+  /// map as a whole this way first, then `add`ed: so its first places are standardised as well as
+  /// others.
   /// @return false when the session has places already, or the descriptor is of another size or not
   ///   finite, or nothing is to be standardised here (what a drive adds comes standardised): then
   ///   nothing has changed
@@ -154,6 +154,9 @@ class PlaceMap {
   [[nodiscard]] const DescriptorRows& rows() const noexcept { return rows_; }
 
   [[nodiscard]] FullMap full_map() const noexcept { return full_map_; }
+
+  /// Whether its places are standardised.
+  [[nodiscard]] bool standardises() const noexcept { return standardisation_.on; }
 
   /// Statistics of the newest session that has any: a drive starts from them. `frames() == 0` where
   /// nothing was learnt.

@@ -489,6 +489,22 @@ TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {
   EXPECT_THROW(Detector(config, empty), SetupError);
 }
 
+TEST(Detector, TakesAMapThatStandardisesWithoutHavingLearntTheDrive) {
+  MatcherConfig config = paper(Candidates::all, 5);
+  config.standardisation.on = true;
+  const oracle::Vectors drive = oracle::drive(1, 30, 9);
+  PlaceMap map(config, {drive.size(), drive.front().size()});
+  for (const auto& place : drive) ASSERT_TRUE(map.add(place));
+  Detector detector(config, map);
+  std::size_t own_place = 0;
+  for (const auto& frame : drive) {
+    for (const Answer& answer : detector.step(frame).answers) {
+      own_place += answer.match && answer.match->place == answer.frame ? 1U : 0U;
+    }
+  }
+  EXPECT_EQ(own_place, drive.size() - config.sequence_length);
+}
+
 TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   const auto faults = [](auto change) {
     MatcherConfig config;

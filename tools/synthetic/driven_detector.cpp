@@ -13,19 +13,10 @@ namespace {
 // What is seen again differs from the map by as much as it resembles it.
 constexpr float noise = 1.0F;
 
-// More do not change what is standardised by.
-constexpr std::size_t most_learnt = 500;
-
 PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
                        const Capacity& capacity) {
   PlaceMap map(config, capacity);
   std::vector<float> descriptor(capacity.descriptor_size);
-  if (config.standardisation.on) {
-    for (std::size_t i = 0; i < std::min(capacity.places, most_learnt); ++i) {
-      places.see(static_cast<double>(i), 0.0F, descriptor);
-      static_cast<void>(map.learn(descriptor));
-    }
-  }
   do {
     places.see(static_cast<double>(map.size()), 0.0F, descriptor);
   } while (map.add(descriptor) && map.size() < capacity.places);

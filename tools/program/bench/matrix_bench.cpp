@@ -56,7 +56,6 @@ class Drive {
 
 PlaceMap map_of(const Drive& drive, const MatcherConfig& config, const Capacity& size) {
   PlaceMap map(config, size);
-  for (std::size_t i = 0; i < drive.frames(); ++i) (void)map.learn(drive.frame(i));
   for (std::size_t i = 0; i < drive.frames(); ++i) (void)map.add(drive.frame(i));
   return map;
 }

@@ -54,7 +54,6 @@ void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::
   };
   PlaceMap map(config, {places, size});
   if (!closing) {
-    for (std::size_t place = 0; place < places; ++place) static_cast<void>(map.learn(next()));
     while (map.add(next())) {
     }
   }
