@@ -95,7 +95,8 @@ TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
           "' run --source first.npy --map m.seqloop --pace live --fps 200 --save-every-s 0.1");
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_NE(full.err.find("not all of the drive is saved"), std::string::npos) << full.err;
-  EXPECT_NE(full.out.find("\"newest\":119,"), std::string::npos) << "the run went on";
+  // Which frames it takes is up to the machine; a slow one may lose the last.
+  EXPECT_NE(full.out.find("\"status\":\"ended\""), std::string::npos) << "the run went on";
   // What had been saved is there, and the rest has room again.
   expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
 }
