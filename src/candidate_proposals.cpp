@@ -98,7 +98,7 @@ CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, 
   for (const Alike& best : found) {
     look_closely(queries, map, rows, best.row);
   }
-  weigh(queries, map, rows, oldest);
+  weigh(queries, map, oldest);
   return {scanned_, sketches_};
 }
 
@@ -147,15 +147,19 @@ void CandidateProposals::look_closely(const QueryHistory& queries, const PlaceMa
                                       std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
   const CandidateRun session = map.order().around(row);
-  const std::size_t first = map.order().before(row, slack);
-  Alike best{std::numeric_limits<std::uint32_t>::max(), row};
-  for (std::size_t r = first; r < std::min({row + slack + 1, rows, session.last}); ++r) {
-    std::uint32_t sum = 0;
-    for (std::size_t frame = 0; frame < frames_; ++frame) {
-      const std::size_t back = frame * frames_apart;
-      sum += differing_bits(queries, map, rows, back, r, back);
+  const std::size_t first = std::max(session.first, row - std::min(row, slack));
+  const std::size_t last = std::min({row + slack + 1, rows, session.last});
+  std::array<std::uint32_t, 2 * slack + 1> sums{};
+  for (std::size_t frame = 0; frame < frames_; ++frame) {
+    const std::size_t back = frame * frames_apart;
+    const CloseSketch sketch = frame_before(queries, back);
+    for (std::size_t r = first; r < last; ++r) {
+      sums[r - first] += differing_bits(map, sketch, session.first, r, back);
     }
-    if (sum < best.bits) best = {sum, r};
+  }
+  Alike best{std::numeric_limits<std::uint32_t>::max(), row};
+  for (std::size_t r = first; r < last; ++r) {
+    if (sums[r - first] < best.bits) best = {sums[r - first], r};
   }
   remember(map.order(), best);
 }
@@ -170,17 +174,20 @@ void CandidateProposals::prefetch(const PlaceMap& map, std::size_t rows,
                        });
 }
 
-/// Differing bits of the frame `back` frames before the newest and the row `behind` rows before
-/// `row`; a row that its session has not differs as much as by chance.
-std::uint32_t CandidateProposals::differing_bits(const QueryHistory& queries, const PlaceMap& map,
-                                                 std::size_t rows, std::size_t back,
-                                                 std::size_t row, std::size_t behind) noexcept {
-  if (behind > row || row - behind >= rows || map.order().apart(row, row - behind) != behind) {
-    return chance;
-  }
+/// The sketch of the frame `back` frames before the newest.
+CloseSketch CandidateProposals::frame_before(const QueryHistory& queries,
+                                             std::size_t back) const noexcept {
+  return queries.rows().close_sketch(queries.row_of(newest_ - back));
+}
+
+/// Differing bits of a frame and the row `behind` rows before `row`; one that its session, which
+/// begins at the row `first`, has not differs as much as by chance.
+std::uint32_t CandidateProposals::differing_bits(const PlaceMap& map, CloseSketch frame,
+                                                 std::size_t first, std::size_t row,
+                                                 std::size_t behind) noexcept {
+  if (behind > row - first) return chance;
   ++sketches_;
-  return map.rows().look_closely(queries.rows(), queries.row_of(newest_ - back),
-                                 map.order().slot(row - behind));
+  return map.rows().look_closely(frame, map.order().slot(row - behind));
 }
 
 /// Keeps a row if it is among the best, and only the best of those that are near each other.
@@ -198,15 +205,16 @@ void CandidateProposals::remember(const PlaceOrder& order, Alike alike) noexcept
 }
 
 /// Weighs what is remembered along the whole window.
-void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
+void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map,
                                std::uint64_t oldest) noexcept {
   const auto reach = static_cast<std::size_t>(std::min<std::uint64_t>(newest_ - oldest, ds_));
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t row = remembered_[i].row;
-    const std::size_t line = best_line(queries, map, rows, row, reach);
+    const std::size_t first = map.order().around(row).first;
+    const std::size_t line = best_line(queries, map, first, row, reach);
     std::uint32_t bits = 0;
     for (std::size_t back = 0; back <= reach; back += frames_between) {
-      bits += differing_bits(queries, map, rows, back, row, rows_behind(line, back));
+      bits += differing_bits(map, frame_before(queries, back), first, row, rows_behind(line, back));
     }
     const std::size_t frames = reach / frames_between + 1;
     const Proposal proposal{
@@ -217,20 +225,22 @@ void CandidateProposals::weigh(const QueryHistory& queries, const PlaceMap& map,
 }
 
 /// Of the lines that end at a row, the one that looks most alike at a few frames of the window.
+/// @param first row of its session
 std::size_t CandidateProposals::best_line(const QueryHistory& queries, const PlaceMap& map,
-                                          std::size_t rows, std::size_t row,
+                                          std::size_t first, std::size_t row,
                                           std::size_t reach) noexcept {
   std::array<std::uint32_t, lines_tried> sums{};
   for (std::size_t piece = 0; piece <= pieces_tried; ++piece) {
     const std::size_t back = ds_ * piece / pieces_tried;
     if (back > reach) break;
+    const CloseSketch frame = frame_before(queries, back);
     std::uint32_t bits = 0;
+    auto before = std::numeric_limits<std::size_t>::max();
     for (std::size_t line = 0; line < lines_tried; ++line) {
       // Lines that are still together at this frame look at the same row.
       const std::size_t behind = rows_behind(line, back);
-      if (line == 0 || behind != rows_behind(line - 1, back)) {
-        bits = differing_bits(queries, map, rows, back, row, behind);
-      }
+      if (behind != before) bits = differing_bits(map, frame, first, row, behind);
+      before = behind;
       sums[line] += bits;
     }
   }

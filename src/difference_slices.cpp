@@ -121,9 +121,8 @@ void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexc
   }
 }
 
-std::size_t DifferenceSlices::missing(const PlaceMap& map, std::uint64_t frame, std::size_t first,
-                                      std::size_t last) const noexcept {
-  if (first >= last) return 0;
+std::size_t DifferenceSlices::missing_anywhere(const PlaceMap& map, std::uint64_t frame,
+                                               std::size_t first, std::size_t last) const noexcept {
   const std::size_t reach = enhance_ ? contrast_.reach() : 0;
   const CandidateRun wider = with_around(map.order(), first, last, reach);
   std::size_t count = 0;

@@ -87,17 +87,18 @@ class CandidateProposals {
   void prefetch(const PlaceMap& map, std::size_t rows, std::size_t row) const noexcept;
   void scan(const QueryHistory& queries, const PlaceMap& map, std::size_t first,
             std::span<std::uint32_t> bits) noexcept;
-  [[nodiscard]] std::uint32_t differing_bits(const QueryHistory& queries, const PlaceMap& map,
-                                             std::size_t rows, std::size_t back, std::size_t row,
+  [[nodiscard]] CloseSketch frame_before(const QueryHistory& queries,
+                                         std::size_t back) const noexcept;
+  [[nodiscard]] std::uint32_t differing_bits(const PlaceMap& map, CloseSketch frame,
+                                             std::size_t first, std::size_t row,
                                              std::size_t behind) noexcept;
   [[nodiscard]] std::size_t rows_behind(std::size_t line, std::size_t back) const noexcept {
     return behind_[line * (ds_ + 1) + back];
   }
   void remember(const PlaceOrder& order, Alike alike) noexcept;
-  void weigh(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
-             std::uint64_t oldest) noexcept;
+  void weigh(const QueryHistory& queries, const PlaceMap& map, std::uint64_t oldest) noexcept;
   [[nodiscard]] std::size_t best_line(const QueryHistory& queries, const PlaceMap& map,
-                                      std::size_t rows, std::size_t row,
+                                      std::size_t first, std::size_t row,
                                       std::size_t reach) noexcept;
 
   std::size_t ds_;

@@ -161,4 +161,7 @@ class DescriptorRows {
   std::span<std::uint64_t> scanned_;   // [rows, scanned_words]: these words again, side by side
 };
 
+/// The close words of a frame's sketch.
+using CloseSketch = std::span<const std::uint64_t, DescriptorRows::close_words>;
+
 }  // namespace seqloop

@@ -49,9 +49,6 @@ struct Scene {
   [[nodiscard]] double likeness(double share) const noexcept { return (mean - share) / deviation; }
 };
 
-/// The close words of a frame's sketch.
-using CloseSketch = std::span<const std::uint64_t, DescriptorRows::close_words>;
-
 /// What a frame says for a row of the map.
 struct RowGain {
   double gain;      ///< by novelty, ln of how much likelier the frame is there, -1.5 .. 3
