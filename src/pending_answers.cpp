@@ -20,6 +20,11 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
+// Steps in a row that say enough for an answer. What is said goes up and down from step to step,
+// and the highest of it says too much: where a robot was carried away, a trace may look as if it
+// went on.
+constexpr std::size_t sure_steps = 5;
+
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
 /// section 6.6.
@@ -53,7 +58,7 @@ void PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   at(frame) = {frame,      true, readable, false, false, false, 0, 0.0,
-               {0.0, 0.0}, 0,    1.0,      none,  0.0,   0,     {}};
+               {0.0, 0.0}, 0,    0,        1.0,   none,  0.0,   0, {}};
   end_ = frame + 1;
 }
 
@@ -198,8 +203,9 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
-    const bool sure = waiting.believed && waiting.lag >= 2 * after_centre_ &&
-                      probability(waiting) >= least_before_calibration_;
+    const bool enough = waiting.believed && probability(waiting) >= least_before_calibration_;
+    waiting.sure_for = enough ? waiting.sure_for + 1 : 0;
+    const bool sure = waiting.sure_for >= sure_steps && waiting.lag >= 2 * after_centre_;
     if (late || sure || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;

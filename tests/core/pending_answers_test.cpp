@@ -68,6 +68,34 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
   }
 }
 
+/// What is said once is the highest of many: it has to be said for five steps.
+TEST(PendingAnswers, SayItOnceTheyHaveBeenSureForFiveSteps) {
+  MatcherConfig config;
+  config.standardisation.on = false;
+  Seen seen(test::way(1, 200, 0.3F, 1), config);
+  const Trajectories lines(seen.memory.arena, config.sequence_length, config.vmin, config.vmax);
+  PlaceBelief belief(seen.memory.arena, config);
+  PendingAnswers pending(seen.memory.arena, config, lines);
+  pending.accept_from(1.0F);  // hardly anything is as sure as that
+  constexpr std::uint64_t enough_from = 100;
+  std::vector<std::size_t> given;
+  for (const auto& descriptor : test::way(1, 200, 0.3F, 2)) {
+    const SceneView view = seen.take(descriptor);
+    if (view.newest == enough_from) pending.accept_from(0.99F);
+    pending.add(view.newest, true);
+    static_cast<void>(belief.observe(view));
+    pending.believe(belief, seen.map, view.newest, 0);
+    pending.answer(belief, seen.map, view.newest, 0);
+    given.push_back(pending.answers().size());
+    pending.clear();
+  }
+  for (std::size_t step = enough_from - 5; step < enough_from + 4; ++step) {
+    EXPECT_EQ(given[step], 0U) << step;
+  }
+  EXPECT_GT(given[enough_from + 4], 50U);
+  EXPECT_EQ(given[enough_from + 5], 1U);
+}
+
 /// A row that is left over from an earlier revisit, and that nobody believes in, keeps no frame
 /// from the next one's trace.
 TEST(PendingAnswers, BeginWithTheRevisit) {

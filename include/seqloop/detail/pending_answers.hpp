@@ -92,6 +92,7 @@ class PendingAnswers {
     double right;           // that the trace is right: the most that was ever said
     TraceSpan::On on;       // that the frame lies on it
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
+    std::size_t sure_for;   // steps in a row that said enough for an answer
     double new_place;       // belief in none, as it came
     std::size_t likeliest;  // row, as it came; `none` where there was none
     double novelty;         // of the frame
