@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "seqloop/detail/arena.hpp"
@@ -33,6 +36,35 @@ TEST(TouchedMemory, MovesWithItsOwner) {
   first.span()[99] = std::byte{3};
   const TouchedMemory second(std::move(first));
   EXPECT_EQ(second.span()[99], std::byte{3});
+}
+
+/// The flags that the system has of the mapping with a byte, or nothing.
+std::string flags_of(const void* byte) {
+  const auto address = reinterpret_cast<std::uintptr_t>(byte);
+  std::ifstream mappings("/proc/self/smaps");
+  bool there = false;
+  for (std::string line; std::getline(mappings, line);) {
+    std::istringstream words(line);
+    std::uintptr_t first = 0;
+    std::uintptr_t last = 0;
+    char to = 0;
+    if (words >> std::hex >> first >> to >> last && to == '-') {
+      there = first <= address && address < last;
+    } else if (there && line.rfind("VmFlags:", 0) == 0) {
+      return line + ' ';
+    }
+  }
+  return {};
+}
+
+TEST(TouchedMemory, AsksForLargePages) {
+  if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled")) {
+    GTEST_SKIP() << "this system has none";
+  }
+  const TouchedMemory memory(std::uint64_t{16} << 20U);
+  const std::string flags = flags_of(memory.span().data());
+  if (flags.empty()) GTEST_SKIP() << "this system does not tell";
+  EXPECT_NE(flags.find(" hg "), std::string::npos) << flags;
 }
 
 TEST(TouchedMemory, ThatIsNotToBeHadIsRefused) {

@@ -12,6 +12,7 @@
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
+#include "seqloop/linux/touched_memory.hpp"
 #include "synthetic/places.hpp"
 
 namespace seqloop::program {
@@ -34,7 +35,7 @@ class Drive {
   Drive(const Capacity& size, float noise)
       : size_(size.descriptor_size),
         stride_(padded_size(size_)),
-        memory_(std::uint64_t{size.places} * stride_ * sizeof(float) + Arena::alignment, {}),
+        memory_(std::uint64_t{size.places} * stride_ * sizeof(float) + Arena::alignment),
         values_(Arena(memory_.span()).take<float>("drive", size.places * stride_)) {
     SyntheticPlaces street(size_);
     for (std::size_t i = 0; i < size.places; ++i) {
@@ -50,27 +51,31 @@ class Drive {
  private:
   std::size_t size_;
   std::size_t stride_;
-  ArenaMemory memory_;
+  live::TouchedMemory memory_;
   std::span<float> values_;
 };
-
-PlaceMap map_of(const Drive& drive, const MatcherConfig& config, const Capacity& size) {
-  PlaceMap map(config, size);
-  for (std::size_t i = 0; i < drive.frames(); ++i) (void)map.add(drive.frame(i));
-  return map;
-}
 
 /// A map and who matches with it.
 struct Matched {
   Matched(const Drive& reference, const MatcherConfig& config, const Capacity& size)
-      : map(map_of(reference, config, size)), detector(config, map) {}
+      : memory(PlaceMap::bytes_needed(config, size)),
+        map(filled(PlaceMap(config, size, memory.span(), true), reference)),
+        working_memory(Detector::bytes_needed(config, size)),
+        detector(config, map, working_memory.span()) {}
 
   [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
                                                   const Capacity& size) {
     return PlaceMap::bytes_needed(config, size) + Detector::bytes_needed(config, size);
   }
 
+  [[nodiscard]] static PlaceMap filled(PlaceMap map, const Drive& drive) {
+    for (std::size_t i = 0; i < drive.frames(); ++i) (void)map.add(drive.frame(i));
+    return map;
+  }
+
+  live::TouchedMemory memory;
   PlaceMap map;
+  live::TouchedMemory working_memory;
   Detector detector;
 };
 

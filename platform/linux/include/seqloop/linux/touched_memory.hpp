@@ -11,7 +11,8 @@ namespace seqloop::live {
 
 /// Memory for what is large, such as a map, each page of which is there once it is waited for. A
 /// program that touches them one by one waits for the system at each; here it is asked for in
-/// large pieces, by a thread for each processor, while a map is read from a disk.
+/// large pieces, by a thread for each processor, while a map is read from a disk. Pages are large
+/// ones where the system gives them to who asks.
 class TouchedMemory {
  public:
   /// Begins to ask for the pages. @param bytes 1 or more. Throws SetupError: they are not to be had
