@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <span>
 #include <vector>
@@ -22,10 +23,14 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
 std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
                      const MatcherConfig& config, Progress& progress,
                      const std::function<void(const Frame&)>& look) {
+  // Where nothing is known of descriptors, the drive is learnt as a whole before its first place is
+  // standardised.
+  const bool learns = config.standardisation.on && map.statistics().frames() == 0;
   std::vector<float> buffer(map.descriptor_size());
   std::deque<std::vector<float>> described{std::vector<float>(map.descriptor_size(), 0.0F)};
-  std::vector<std::span<const float>> places;
+  std::vector<std::span<const float>> learnt;
   std::span<const float> last = described.front();
+  std::size_t places = 0;
   std::size_t readable = 0;
   std::size_t blank_frames = 0;
   Frame frame;
@@ -42,23 +47,29 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
       const bool left_out = config.blank_is_unreadable && is_blank;
       const bool stays = descriptor.data() == frame.descriptor.data();
       if (!left_out && stays) last = descriptor;
-      if (!left_out && !stays) last = described.emplace_back(descriptor.begin(), descriptor.end());
+      if (!left_out && !stays) {
+        if (learns) described.emplace_back(map.descriptor_size());
+        std::ranges::copy(descriptor, described.back().begin());
+        last = described.back();
+      }
     }
-    if (places.size() == map.capacity()) {
+    if (places++ == map.capacity()) {
       throw SetupError({"max-places",
                         fmt::format("the reference has more frames than the map has room for, {}",
                                     map.capacity()),
                         "raise --max-places"});
     }
-    places.push_back(last);
+    if (learns) {
+      learnt.push_back(last);
+    } else {
+      static_cast<void>(map.add(last));
+    }
     progress.step();
   }
   progress.done();
   if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
-  if (config.standardisation.on && map.statistics().frames() == 0) {
-    for (const std::span<const float> place : places) static_cast<void>(map.learn(place));
-  }
-  for (const std::span<const float> place : places) static_cast<void>(map.add(place));
+  for (const std::span<const float> place : learnt) static_cast<void>(map.learn(place));
+  for (const std::span<const float> place : learnt) static_cast<void>(map.add(place));
   return blank_frames;
 }
 
