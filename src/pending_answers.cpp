@@ -25,6 +25,11 @@ constexpr std::size_t own = 6;
 // went on.
 constexpr std::size_t sure_steps = 5;
 
+// So many frames either side of where two traces meet are told with this at most: which of the two
+// a frame there was on is known less well than that both are right.
+constexpr std::uint64_t frames_at_a_meeting = 2;
+constexpr double most_at_a_meeting = 0.95;
+
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
 /// section 6.6.
@@ -205,10 +210,33 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
     const bool late = frame < oldest || newest - frame >= patience_;
     const bool enough = waiting.believed && probability(waiting) >= least_before_calibration_;
     waiting.sure_for = enough ? waiting.sure_for + 1 : 0;
-    const bool sure = waiting.sure_for >= sure_steps && waiting.lag >= 2 * after_centre_;
+    const bool sure = waiting.sure_for >= sure_steps && waiting.lag >= 2 * after_centre_ &&
+                      told(map, waiting) >= least_before_calibration_;
     if (late || sure || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
+}
+
+/// Whether a frame beside this one was on a trace that goes through another place.
+bool PendingAnswers::meets_another(const PlaceMap& map, const Waiting& waiting) noexcept {
+  const std::uint64_t first = waiting.frame - std::min(waiting.frame, frames_at_a_meeting);
+  const std::uint64_t last = std::min(waiting.frame + frames_at_a_meeting + 1, end_);
+  for (std::uint64_t frame = first; frame < last; ++frame) {
+    const Waiting& other = at(frame);
+    constexpr double half = 0.5;
+    if (other.frame != frame || !other.believed || probability(other) <= half) continue;
+    if (map.order().apart(other.row, waiting.row) <= own + 2 * frames_at_a_meeting) continue;
+    const bool both_there = std::max(other.row, waiting.row) < map.size();
+    if (!both_there || !map.same_place(other.row, waiting.row)) return true;
+  }
+  return false;
+}
+
+/// What is told of a frame, before it is calibrated.
+double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcept {
+  const double is_there = probability(waiting);
+  if (is_there <= most_at_a_meeting || !meets_another(map, waiting)) return is_there;
+  return most_at_a_meeting;
 }
 
 void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept {
@@ -218,7 +246,7 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& wai
   if (!waiting.readable) return;
   answer.gate = Gate::new_place;
   if (!waiting.believed) return;
-  answer.probability = static_cast<float>(calibrated(probability(waiting)));
+  answer.probability = static_cast<float>(calibrated(told(map, waiting)));
   answer.match = match(belief, map, waiting.frame);
   const bool sure = static_cast<double>(answer.probability) >= least_;
   constexpr double half = 0.5;

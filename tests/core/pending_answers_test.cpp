@@ -40,6 +40,9 @@ std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
     answers.insert(answers.end(), pending.answers().begin(), pending.answers().end());
     pending.clear();
   }
+  // The drive ends.
+  pending.answer(belief, seen.map, query.size() - 1, query.size());
+  answers.insert(answers.end(), pending.answers().begin(), pending.answers().end());
   return answers;
 }
 
@@ -94,6 +97,29 @@ TEST(PendingAnswers, SayItOnceTheyHaveBeenSureForFiveSteps) {
   }
   EXPECT_GT(given[enough_from + 4], 50U);
   EXPECT_EQ(given[enough_from + 5], 1U);
+}
+
+/// Which side of a jump a frame was on is known less well than where either side is.
+TEST(PendingAnswers, AreNotSureOfTheFramesWhereTwoTracesMeet) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  oracle::Vectors query(known.begin(), known.begin() + 60);
+  query.insert(query.end(), known.begin() + 120, known.end());
+  std::vector<std::optional<std::size_t>> rows(query.size());
+  for (std::size_t i = 0; i < query.size(); ++i) rows[i] = i < 60 ? i : i + 60;
+  std::size_t sure = 0;
+  const std::vector<Answer> answers = answers_with_lines(query, rows);
+  EXPECT_EQ(answers.size(), query.size());
+  for (const Answer& answer : answers) {
+    SCOPED_TRACE(answer.frame);
+    const bool at_the_jump = answer.frame >= 58 && answer.frame < 62;
+    if (at_the_jump) {
+      EXPECT_NE(answer.gate, Gate::match);
+      EXPECT_LE(answer.probability, 0.95F);
+    } else if (answer.frame >= 20 && answer.frame < 100) {
+      sure += static_cast<std::size_t>(answer.gate == Gate::match);
+    }
+  }
+  EXPECT_EQ(sure, 76U);
 }
 
 /// A row that is left over from an earlier revisit, and that nobody believes in, keeps no frame

@@ -118,6 +118,8 @@ class PendingAnswers {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
+  [[nodiscard]] bool meets_another(const PlaceMap& map, const Waiting& waiting) noexcept;
+  [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
