@@ -147,7 +147,7 @@ void CandidateProposals::look_closely(const QueryHistory& queries, const PlaceMa
                                       std::size_t rows, std::size_t row) noexcept {
   if (row >= rows) return;
   const CandidateRun session = map.order().around(row);
-  const std::size_t first = std::max(session.first, row - std::min(row, slack));
+  const std::size_t first = map.order().before(row, slack);
   const std::size_t last = std::min({row + slack + 1, rows, session.last});
   std::array<std::uint32_t, 2 * slack + 1> sums{};
   for (std::size_t frame = 0; frame < frames_; ++frame) {

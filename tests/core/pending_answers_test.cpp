@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/seen.hpp"
@@ -12,37 +13,55 @@
 namespace seqloop {
 namespace {
 
-/// Drives past a known way. Sequence search finds one line for each frame whose row is given: of
-/// velocity 1 and through that row.
-std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
-                                       const std::vector<std::optional<std::size_t>>& rows) {
+MatcherConfig not_standardised() {
   MatcherConfig config;
   config.standardisation.on = false;
-  Seen seen(test::way(1, 200, 0.3F, 1), config);
-  const Trajectories lines(seen.memory.arena, config.sequence_length, config.vmin, config.vmax);
-  std::size_t straight = 0;
-  while (lines.velocity(straight) != 1.0) ++straight;
-  PlaceBelief belief(seen.memory.arena, config);
-  PendingAnswers pending(seen.memory.arena, config, lines);
-  std::vector<Answer> answers;
-  for (const auto& descriptor : query) {
+  return config;
+}
+
+/// Drives past a known way.
+struct Passing {
+  /// @param rows that sequence search finds, by frame: each by one line, of velocity 1 and through
+  ///   that row, once a whole window has come
+  /// @return the answers of this step, until the next
+  std::span<const Answer> step(const std::vector<float>& descriptor,
+                               const std::vector<std::optional<std::size_t>>& rows) {
+    pending.clear();
     const SceneView view = seen.take(descriptor);
     pending.add(view.newest, true);
     static_cast<void>(belief.observe(view));
     const std::size_t after = lines.window() - 1 - lines.centre();
     const auto centre = static_cast<std::size_t>(view.newest - after);
-    if (view.newest >= lines.window() - 1 && rows[centre]) {
+    if (view.newest >= lines.window() - 1 && centre < rows.size() && rows[centre]) {
+      std::size_t straight = 0;
+      while (lines.velocity(straight) != 1.0) ++straight;
       const FoundLine line{*rows[centre], 0.5, 0.5, straight};
       pending.found(centre, std::span(&line, 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
     pending.answer(belief, seen.map, view.newest, 0);
-    answers.insert(answers.end(), pending.answers().begin(), pending.answers().end());
-    pending.clear();
+    return pending.answers();
   }
-  // The drive ends.
-  pending.answer(belief, seen.map, query.size() - 1, query.size());
-  answers.insert(answers.end(), pending.answers().begin(), pending.answers().end());
+
+  MatcherConfig config = not_standardised();
+  Seen seen{test::way(1, 200, 0.3F, 1), config};
+  Trajectories lines{seen.memory.arena, config.sequence_length, config.vmin, config.vmax};
+  PlaceBelief belief{seen.memory.arena, config};
+  PendingAnswers pending{seen.memory.arena, config, lines};
+};
+
+/// Of a whole drive. @param rows that sequence search finds, by frame
+std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
+                                       const std::vector<std::optional<std::size_t>>& rows) {
+  Passing passing;
+  std::vector<Answer> answers;
+  const auto take = [&](std::span<const Answer> some) {
+    answers.insert(answers.end(), some.begin(), some.end());
+  };
+  for (const auto& descriptor : query) take(passing.step(descriptor, rows));
+  passing.pending.clear();
+  passing.pending.answer(passing.belief, passing.seen.map, query.size() - 1, query.size());
+  take(passing.pending.answers());
   return answers;
 }
 
@@ -73,24 +92,13 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
 
 /// What is said once is the highest of many: it has to be said for five steps.
 TEST(PendingAnswers, SayItOnceTheyHaveBeenSureForFiveSteps) {
-  MatcherConfig config;
-  config.standardisation.on = false;
-  Seen seen(test::way(1, 200, 0.3F, 1), config);
-  const Trajectories lines(seen.memory.arena, config.sequence_length, config.vmin, config.vmax);
-  PlaceBelief belief(seen.memory.arena, config);
-  PendingAnswers pending(seen.memory.arena, config, lines);
-  pending.accept_from(1.0F);  // hardly anything is as sure as that
-  constexpr std::uint64_t enough_from = 100;
+  Passing passing;
+  passing.pending.accept_from(1.0F);  // hardly anything is as sure as that
+  constexpr std::size_t enough_from = 100;
   std::vector<std::size_t> given;
   for (const auto& descriptor : test::way(1, 200, 0.3F, 2)) {
-    const SceneView view = seen.take(descriptor);
-    if (view.newest == enough_from) pending.accept_from(0.99F);
-    pending.add(view.newest, true);
-    static_cast<void>(belief.observe(view));
-    pending.believe(belief, seen.map, view.newest, 0);
-    pending.answer(belief, seen.map, view.newest, 0);
-    given.push_back(pending.answers().size());
-    pending.clear();
+    if (given.size() == enough_from) passing.pending.accept_from(0.99F);
+    given.push_back(passing.step(descriptor, {}).size());
   }
   for (std::size_t step = enough_from - 5; step < enough_from + 4; ++step) {
     EXPECT_EQ(given[step], 0U) << step;
