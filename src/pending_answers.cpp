@@ -20,11 +20,6 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
-// Steps in a row that say enough for an answer. What is said goes up and down from step to step,
-// and the highest of it says too much: where a robot was carried away, a trace may look as if it
-// went on.
-constexpr std::size_t sure_steps = 5;
-
 // So many frames either side of where two traces meet are told with this at most: which of the two
 // a frame there was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
@@ -63,7 +58,7 @@ void PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   at(frame) = {frame,      true, readable, false, false, false, 0, 0.0,
-               {0.0, 0.0}, 0,    0,        1.0,   none,  0.0,   0, {}};
+               {0.0, 0.0}, 0,    1.0,      none,  0.0,   0,     {}};
   end_ = frame + 1;
 }
 
@@ -208,13 +203,18 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
-    const bool enough = waiting.believed && probability(waiting) >= least_before_calibration_;
-    waiting.sure_for = enough ? waiting.sure_for + 1 : 0;
-    const bool sure = waiting.sure_for >= sure_steps && waiting.lag >= 2 * after_centre_ &&
-                      told(map, waiting) >= least_before_calibration_;
-    if (late || sure || !waiting.readable) give(belief, map, waiting);
+    if (late || is_sure(map, waiting) || !waiting.readable) give(belief, map, waiting);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
+}
+
+/// Whether nothing that comes later is likely to change a frame's answer. Where a robot localises,
+/// a trace seldom ends but because it was carried away, and may look for long as if it went on: so
+/// what is said has to be enough even if the trace has been left since.
+bool PendingAnswers::is_sure(const PlaceMap& map, const Waiting& waiting) noexcept {
+  return waiting.believed && waiting.lag >= 2 * after_centre_ &&
+         told(map, waiting) >= least_before_calibration_ &&
+         (grows_ || waiting.right * waiting.on.left >= least_before_calibration_);
 }
 
 /// Whether a frame beside this one was on a trace that goes through another place.

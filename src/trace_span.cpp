@@ -16,6 +16,10 @@ struct Chances {
 };
 constexpr Chances usual_chances{0.01, 0.001};
 
+/// And that a robot that has left a trace is on it again. Seldom, but where the frames in between
+/// say much against the trace, it was elsewhere.
+constexpr double returns = 1e-5;
+
 /// Where the pictures go on from one to the next, a frame that has changed as much as can be is a
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
 /// none.
@@ -67,10 +71,11 @@ struct Backward {
   /// it comes from
   void step(double likelier, double gone_likelier, const Chances& chances) {
     for (std::size_t i = 0; i < 2; ++i) {
-      const double stays = likelier * on[i];
-      gone[i] *= gone_likelier;
-      fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * stays;
-      on[i] = (1.0 - chances.ends) * stays + chances.ends * gone[i];
+      const double is_on = likelier * on[i];
+      const double is_gone = gone_likelier * gone[i];
+      fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * is_on;
+      on[i] = (1.0 - chances.ends) * is_on + chances.ends * is_gone;
+      gone[i] = (1.0 - returns) * is_gone + returns * is_on;
       const double sum = fresh[i] + on[i] + gone[i];
       if (!is_far(sum)) continue;
       fresh[i] /= sum;
@@ -109,8 +114,10 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     const double likelier = exponential(step.gain);
     const Chances chances = chances_of(step.change, least);
     if (back + 1 < trace.size()) {
-      gone += on * chances.ends;
-      on = on * (1.0 - chances.ends) + fresh * chances.begins;
+      const double leaves = on * chances.ends;
+      const double comes_back = gone * returns;
+      on += fresh * chances.begins + comes_back - leaves;
+      gone += leaves - comes_back;
       fresh *= 1.0 - chances.begins;
     }
     on *= likelier;

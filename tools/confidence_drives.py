@@ -153,7 +153,8 @@ def street(seed: int, use: str, alone: int | None = None):
     return make
 
 
-def all_drives(seeds: list[int]) -> list[Drive]:
+def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
+    """@param teleports_by so many times as many teleports"""
     (day, night), (summer, winter) = GARDENS, NORDLAND
     drives = [
         Drive("gardens-day-night", localise(night, day), (10, 2), GARDENS),
@@ -165,9 +166,13 @@ def all_drives(seeds: list[int]) -> list[Drive]:
         Drive("garage", garage, (12, 27), (GARAGE, GARAGE_TRUTH)),
         Drive("standing-nordland", standing(summer, 300, 299), (10, 2), (summer,)),
         Drive("standing-garage", standing(GARAGE, 150, 0), (10, 2), (GARAGE,)),
-        Drive("covered-lens", one_after_the_other(day, night, 3000), (10, 2), GARDENS),
-        Drive("teleports-gardens", teleports(night, day, 40, 15, 80), (10, 2), GARDENS),
-        Drive("teleports-nordland", teleports(winter, summer, 200, 12, 60), (10, 1), NORDLAND)]
+        Drive("covered-lens", one_after_the_other(day, night, 3000), (10, 2), GARDENS)]
+    for query, reference, pieces, lengths, exact in (
+            (night, day, 40, (15, 80), 2), (day, night, 40, (15, 80), 2),
+            (winter, summer, 200, (12, 60), 1), (summer, winter, 200, (12, 60), 1)):
+        carried = teleports(query, reference, teleports_by * pieces, *lengths)
+        name = f"teleports-{query.split('/')[-1]}"
+        drives.append(Drive(name, carried, (10, exact), (query, reference)))
     drives += [Drive(f"new-{source.split('/')[-1]}", nothing_twice(source), (10, 2), (source,))
                for source in (*GARDENS, *NORDLAND)]
     for seed in seeds:

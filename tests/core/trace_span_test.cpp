@@ -3,6 +3,7 @@
 #include "seqloop/detail/trace_span.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -13,19 +14,20 @@
 namespace seqloop {
 namespace {
 
-/// All the ways in which a trace may begin and end, one by one.
-TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
+/// All the ways in which a robot may come onto a trace, leave it and come back, one by one.
+TEST(TraceSpan, IsTheSumOverAllWays) {
   TestArena memory;
   TraceSpan span(memory.arena, 40);
   std::mt19937 random(7);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
   for (int round = 0; round < 50; ++round) {
-    const std::size_t frames = 1 + random() % 40;
+    const std::size_t frames = 1 + random() % 9;
     const double before = round == 0 ? 0.0 : share();
     const double usual = share();
     std::vector<BeliefTraces::Step> trace;
+    // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
-      trace.push_back({i, 4.0 * share() - 2.0, share(), share()});
+      trace.push_back({i, 16.0 * share() - 8.0, share(), share()});
     }
     const std::size_t asked = 1 + random() % frames;
     const std::size_t agreed = random() % (frames + 1);
@@ -35,8 +37,6 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     const double least = round % 2 == 0 ? 0.1 : 0.3;
     const auto step_of = [&](std::size_t i) { return trace[frames - 1 - i]; };
     const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).change > 0.6; };
-    const auto begins = [&](std::size_t i) { return is_cut(i) ? 0.9 : 0.01; };
-    const auto ends = [&](std::size_t i) { return is_cut(i) ? 0.95 : 0.001; };
     double gained = 0.0;
     double novelty = 0.0;
     for (std::size_t i = frames - agreed; i < frames; ++i) {
@@ -50,46 +50,71 @@ TEST(TraceSpan, IsTheSumOverAllBeginningsAndEnds) {
     TraceSpan::take_usual(less, agreed, born, usual, least);
     const auto found = span.find(less, before, usual, least, asked);
     ASSERT_EQ(found.size(), asked);
-    // On the trace in [first, last).
+    // How likely a frame is, in a state, after that of the frame before.
+    enum State : std::size_t { fresh, on, gone };
+    const auto seen = [&](std::size_t i, State state) {
+      const auto step = step_of(i);
+      const double elsewhere = i < frames - born     ? at_least(0.5)
+                               : i < frames - agreed ? at_least(0.9)
+                                                     : usual;
+      if (state == on) return std::exp(step.gain - elsewhere * std::max(step.novelty, least));
+      // Half as much is usual where it was left.
+      return state == gone ? 1.0 / (1.0 + 0.5 * usual * step.novelty) : 1.0;
+    };
+    const auto moves = [&](std::size_t i, State from, State to) {
+      const double begins = is_cut(i) ? 0.9 : 0.01;
+      const double ends = is_cut(i) ? 0.95 : 0.001;
+      const std::array<std::array<double, 3>, 3> chances{
+          {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
+      return chances[from][to];
+    };
+    std::vector<State> way(frames);
     std::vector<double> still(frames);
     std::vector<double> left(frames);
     double all_still = 0.0;
     double all_left = 0.0;
-    const auto take = [&](std::size_t first, std::size_t last, double chance) {
-      for (std::size_t i = first; i < last; ++i) {
-        const auto step = step_of(i);
-        const double elsewhere = i < frames - born     ? at_least(0.5)
-                                 : i < frames - agreed ? at_least(0.9)
-                                                       : usual;
-        chance *= std::exp(step.gain - elsewhere * std::max(step.novelty, least));
-        if (i > first) chance *= 1.0 - ends(i);
-      }
-      // Half as much is usual where it was left.
-      for (std::size_t i = last; i < frames; ++i) {
-        chance /= 1.0 + 0.5 * usual * step_of(i).novelty;
-      }
-      // That it ends with the frame to come.
-      const double leaves = chance * (last == frames ? 0.001 : ends(last));
-      const double stays = last == frames ? chance : leaves;
-      all_still += stays;
-      all_left += leaves;
-      for (std::size_t i = first; i < last; ++i) {
-        still[i] += stays;
-        left[i] += leaves;
+    const auto take = [&](double chance) {
+      // That it is left with the frame to come, at the latest.
+      const std::array<double, 3> leaves{0.0, 0.001, 1.0};
+      all_still += chance;
+      all_left += chance * leaves[way.back()];
+      for (std::size_t i = 0; i < frames; ++i) {
+        if (way[i] != on) continue;
+        still[i] += chance;
+        left[i] += chance * leaves[way.back()];
       }
     };
-    double not_yet = 1.0 - before;
-    for (std::size_t first = 0; first < frames; ++first) {
-      const double begun = first == 0 ? 1.0 : not_yet * begins(first);
-      if (first > 0) not_yet *= 1.0 - begins(first);
-      for (std::size_t last = first + 1; last <= frames; ++last) take(first, last, begun);
-    }
-    // Or the robot never came onto it.
-    all_still += not_yet;
+    const auto go_on = [&](const auto& self, std::size_t i, double chance) -> void {
+      if (i == frames) return take(chance);
+      for (const State state : {fresh, on, gone}) {
+        const std::array<double, 3> at_first{1.0 - before, 1.0, 0.0};
+        const double moved = i == 0 ? at_first[state] : moves(i, way[i - 1], state);
+        way[i] = state;
+        if (moved > 0.0) self(self, i + 1, chance * moved * seen(i, state));
+      }
+    };
+    go_on(go_on, 0, 1.0);
     for (std::size_t i = frames - asked; i < frames; ++i) {
       EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
       EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
     }
+  }
+}
+
+/// A robot that was carried away, and put back further along the trace.
+TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
+  TestArena memory;
+  TraceSpan span(memory.arena, 80);
+  for (const double gain : {-0.1, -1.0}) {
+    SCOPED_TRACE(gain);
+    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
+    trace.resize(50, {0, gain, 0.5, 0.5});
+    trace.resize(70, {0, 1.0, 0.5, 0.5});
+    const auto on = span.find(trace, 0.0, 0.0, 0.25, trace.size());
+    EXPECT_EQ(on[35].still > 0.99, gain > -0.5) << on[35].still;
+    EXPECT_EQ(on[35].still < 0.01, gain < -0.5) << on[35].still;
+    EXPECT_GT(on[10].still, 0.99);
+    EXPECT_GT(on[60].still, 0.99);
   }
 }
 

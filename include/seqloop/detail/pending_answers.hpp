@@ -92,7 +92,6 @@ class PendingAnswers {
     double right;           // that the trace is right: the most that was ever said
     TraceSpan::On on;       // that the frame lies on it
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
-    std::size_t sure_for;   // steps in a row that said enough for an answer
     double new_place;       // belief in none, as it came
     std::size_t likeliest;  // row, as it came; `none` where there was none
     double novelty;         // of the frame
@@ -118,6 +117,7 @@ class PendingAnswers {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
+  [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool meets_another(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;

@@ -9,9 +9,9 @@
 
 namespace seqloop {
 
-/// From which frame of a trace on the robot was on it, and until which: it may have come onto the
-/// map later than the trace says, or have left it already. A smoother, forward and backward, over
-/// three states. Source: src/README.md, section 6.6.
+/// On which frames of a trace the robot was on it: it may have come onto the map later than the
+/// trace says, have left it already, or have been elsewhere in between. A smoother, forward and
+/// backward, over three states. Source: src/README.md, section 6.6.
 class TraceSpan {
  public:
   /// @param most frames of a trace. Allocates: from the arena only.
