@@ -61,11 +61,12 @@ class CandidateBudget {
   struct Cost {
     std::size_t rows = 0;
     std::size_t distances = 0;
+    std::size_t columns = 0;  // from the newest on, as far back as there is anything to compute
   };
   [[nodiscard]] Cost cost(const Window& window, CandidateRun range) const noexcept;
   /// Whether nothing of a range has to be computed.
   [[nodiscard]] bool complete(const Window& window, CandidateRun range) const noexcept;
-  void compute(const Window& window, CandidateRun range, bool fits) noexcept;
+  void compute(const Window& window, CandidateRun range, std::size_t columns, bool fits) noexcept;
 
   bool limited_;
   std::size_t most_rows_;

@@ -57,6 +57,9 @@ class DifferenceSlices {
   /// A slot of the map holds another place from now on. Work: ds marks.
   void forget(std::size_t slot) noexcept;
 
+  /// Whether differences are enhanced: where all of them are there, that may be to be done yet.
+  [[nodiscard]] bool enhanced() const noexcept { return enhance_; }
+
   /// Whether differences are whole numbers.
   [[nodiscard]] bool whole() const noexcept { return whole_; }
 
