@@ -67,13 +67,13 @@ void CandidateBudget::add_part(const Window& window, CandidateRun range) noexcep
   // With nothing left to spend, only what is there already can come in.
   if (distances_ == most_distances_ && !complete(window, range)) return;
   for (;;) {
-    const Cost more = limited_ ? cost(window, range) : Cost{1, 0, any};
+    const Cost more = limited_ ? cost(window, range) : Cost{1, 0, 0};
     if (more.rows == 0) return;
     const bool fits =
         rows_ + more.rows <= most_rows_ && distances_ + more.distances <= most_distances_;
     const std::size_t length = range.last - range.first;
     if (fits || length == 1) {
-      compute(window, range, window.slices->enhanced() ? any : more.columns, fits);
+      compute(window, range, window.slices->enhanced() ? 0 : more.oldest, fits);
       if (!fits) return;
       rows_ += more.rows;
       runs_.add(range);
@@ -94,17 +94,12 @@ CandidateBudget::Cost CandidateBudget::cost(const Window& window,
   Cost sum;
   runs_.for_each_outside(range, [&](CandidateRun part) {
     sum.rows += part.last - part.first;
-    std::size_t column = 0;
-    std::size_t oldest = 0;
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
-      ++column;
       const std::size_t missing = window.slices->missing(*window.map, frame, first, last);
-      if (missing == 0) return true;
       sum.distances += missing;
-      oldest = column;
+      if (missing > 0) sum.oldest = std::min(sum.oldest, frame);
       return true;
     });
-    sum.columns = std::max(sum.columns, oldest);
   });
   return sum;
 }
@@ -121,12 +116,11 @@ bool CandidateBudget::complete(const Window& window, CandidateRun range) const n
   return complete;
 }
 
-void CandidateBudget::compute(const Window& window, CandidateRun range, std::size_t columns,
+void CandidateBudget::compute(const Window& window, CandidateRun range, std::uint64_t oldest,
                               bool fits) noexcept {
   runs_.for_each_outside(range, [&](CandidateRun part) {
-    std::size_t column = 0;
     for_each_column(window, part, [&](std::uint64_t frame, std::size_t first, std::size_t last) {
-      if (column++ == columns) return false;
+      if (frame < oldest) return false;
       // A column is computed whole, or left to the next frames.
       const std::size_t left = most_distances_ - distances_;
       if (!fits && window.slices->missing(*window.map, frame, first, last) > left) return false;

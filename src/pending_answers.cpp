@@ -213,8 +213,8 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
 /// what is said has to be enough even if the trace has been left since.
 bool PendingAnswers::is_sure(const PlaceMap& map, const Waiting& waiting) noexcept {
   return waiting.believed && waiting.lag >= 2 * after_centre_ &&
-         told(map, waiting) >= least_before_calibration_ &&
-         (grows_ || waiting.right * waiting.on.left >= least_before_calibration_);
+         (grows_ || waiting.right * waiting.on.left >= least_before_calibration_) &&
+         told(map, waiting) >= least_before_calibration_;
 }
 
 /// Whether a frame beside this one was on a trace that goes through another place.

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/detail/portable_math.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 

@@ -16,8 +16,8 @@ struct Chances {
 };
 constexpr Chances usual_chances{0.01, 0.001};
 
-/// And that a robot that has left a trace is on it again. Seldom, but where the frames in between
-/// say much against the trace, it was elsewhere.
+/// The chance that a robot which has left the trace is on it again with a frame. It is small: the
+/// frames in between have to say much against the trace.
 constexpr double returns = 1e-5;
 
 /// Where the pictures go on from one to the next, a frame that has changed as much as can be is a

@@ -14,14 +14,15 @@
 namespace seqloop {
 namespace {
 
-/// All the ways in which a robot may come onto a trace, leave it and come back, one by one.
+/// Of all ways to come onto a trace, leave it and come back, the share that is on it at a frame:
+/// summed up from the first frame on for each of them.
 TEST(TraceSpan, IsTheSumOverAllWays) {
   TestArena memory;
   TraceSpan span(memory.arena, 40);
   std::mt19937 random(7);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
   for (int round = 0; round < 50; ++round) {
-    const std::size_t frames = 1 + random() % 9;
+    const std::size_t frames = 1 + random() % 40;
     const double before = round == 0 ? 0.0 : share();
     const double usual = share();
     std::vector<BeliefTraces::Step> trace;
@@ -62,41 +63,38 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       return state == gone ? 1.0 / (1.0 + 0.5 * usual * step.novelty) : 1.0;
     };
     const auto moves = [&](std::size_t i, State from, State to) {
+      if (i == 0) return from == to ? 1.0 : 0.0;
       const double begins = is_cut(i) ? 0.9 : 0.01;
       const double ends = is_cut(i) ? 0.95 : 0.001;
       const std::array<std::array<double, 3>, 3> chances{
           {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
       return chances[from][to];
     };
-    std::vector<State> way(frames);
-    std::vector<double> still(frames);
-    std::vector<double> left(frames);
-    double all_still = 0.0;
-    double all_left = 0.0;
-    const auto take = [&](double chance) {
-      // That it is left with the frame to come, at the latest.
-      const std::array<double, 3> leaves{0.0, 0.001, 1.0};
-      all_still += chance;
-      all_left += chance * leaves[way.back()];
+    // How likely all frames are: of all ways, or those that are on the trace at one of them.
+    struct Likely {
+      double still;
+      double left;
+    };
+    const auto likely = [&](std::size_t on_at) {
+      std::array<double, 3> ways{1.0 - before, 1.0, 0.0};
       for (std::size_t i = 0; i < frames; ++i) {
-        if (way[i] != on) continue;
-        still[i] += chance;
-        left[i] += chance * leaves[way.back()];
+        std::array<double, 3> next{};
+        for (const State to : {fresh, on, gone}) {
+          for (const State from : {fresh, on, gone}) {
+            next[to] += ways[from] * moves(i, from, to);
+          }
+          next[to] *= i == on_at && to != on ? 0.0 : seen(i, to);
+        }
+        ways = next;
       }
+      // That it is left with the frame to come, at the latest.
+      return Likely{ways[fresh] + ways[on] + ways[gone], 0.001 * ways[on] + ways[gone]};
     };
-    const auto go_on = [&](const auto& self, std::size_t i, double chance) -> void {
-      if (i == frames) return take(chance);
-      for (const State state : {fresh, on, gone}) {
-        const std::array<double, 3> at_first{1.0 - before, 1.0, 0.0};
-        const double moved = i == 0 ? at_first[state] : moves(i, way[i - 1], state);
-        way[i] = state;
-        if (moved > 0.0) self(self, i + 1, chance * moved * seen(i, state));
-      }
-    };
-    go_on(go_on, 0, 1.0);
+    const Likely all = likely(frames);
     for (std::size_t i = frames - asked; i < frames; ++i) {
-      EXPECT_NEAR(found[frames - 1 - i].still, still[i] / all_still, 1e-9);
-      EXPECT_NEAR(found[frames - 1 - i].left, left[i] / all_left, 1e-9);
+      const Likely on_it = likely(i);
+      EXPECT_NEAR(found[frames - 1 - i].still, on_it.still / all.still, 1e-9);
+      EXPECT_NEAR(found[frames - 1 - i].left, on_it.left / all.left, 1e-9);
     }
   }
 }

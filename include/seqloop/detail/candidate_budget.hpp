@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -61,12 +62,14 @@ class CandidateBudget {
   struct Cost {
     std::size_t rows = 0;
     std::size_t distances = 0;
-    std::size_t columns = 0;  // from the newest on, as far back as there is anything to compute
+    // The oldest frame of which there is anything to compute.
+    std::uint64_t oldest = std::numeric_limits<std::uint64_t>::max();
   };
   [[nodiscard]] Cost cost(const Window& window, CandidateRun range) const noexcept;
   /// Whether nothing of a range has to be computed.
   [[nodiscard]] bool complete(const Window& window, CandidateRun range) const noexcept;
-  void compute(const Window& window, CandidateRun range, std::size_t columns, bool fits) noexcept;
+  /// @param oldest frame of which there may be anything to compute
+  void compute(const Window& window, CandidateRun range, std::uint64_t oldest, bool fits) noexcept;
 
   bool limited_;
   std::size_t most_rows_;
