@@ -20,10 +20,12 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
-// So many frames either side of where two traces meet are told with this at most: which of the two
-// a frame there was on is known less well than that both are right.
+// So many frames either side of where two traces meet are in doubt: which of the two a frame there
+// was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
-constexpr double most_at_a_meeting = 0.95;
+
+// As much is told at most where only that is in doubt on which side of a jump a frame lies.
+constexpr double most_in_doubt = 0.95;
 
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
@@ -49,6 +51,8 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
   answers_ = arena.take<Answer>(
       "answers", used ? config.patience + config.frames_at_once + 1 : config.frames_at_once);
   trace_ = arena.take<BeliefTraces::Step>("the likeliest trace", PlaceBelief::depth(config));
+  carried_ = arena.take<TraceSpan::On>("frames on it, where robots are carried away",
+                                       PlaceBelief::depth(config));
 }
 
 void PendingAnswers::accept_from(float least) noexcept {
@@ -57,8 +61,8 @@ void PendingAnswers::accept_from(float least) noexcept {
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  at(frame) = {frame,      true, readable, false, false, false, 0, 0.0,
-               {0.0, 0.0}, 0,    1.0,      none,  0.0,   0,     {}};
+  at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0,
+               {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0.0,   0, {}};
   end_ = frame + 1;
 }
 
@@ -71,6 +75,11 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
 /// That the robot was at the frame's row when it took it.
 double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * (waiting.left ? waiting.on.left : waiting.on.still);
+}
+
+/// The same, if it is carried away as often as it has been.
+double PendingAnswers::probability_if_carried(const Waiting& waiting) noexcept {
+  return waiting.right * (waiting.left ? waiting.carried.left : waiting.carried.still);
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -101,13 +110,19 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const double least = half * belief.usual_novelty();
   const double usual = belief.usual_gain();
   TraceSpan::take_usual(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
-  const std::span<const TraceSpan::On> on =
-      span_.find(trace, known ? before.right * before.on.still : 0.0, usual, least, frames);
+  const double was_on = known ? before.right * before.on.still : 0.0;
+  std::span<const TraceSpan::On> carried;
+  if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
+    std::ranges::copy(span_.find(trace, was_on, usual, least, jumps, frames), carried_.begin());
+    carried = carried_.first(frames);
+  }
+  const auto on = span_.find(trace, was_on, usual, least, 0.0, frames);
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
-    if (frame.waits && frame.frame == newest - back) {
-      look_back(map.order(), frame, {trace[back].row, right, on[back], back, back >= born});
-    }
+    if (!frame.waits || frame.frame != newest - back) continue;
+    look_back(map.order(), frame,
+              {trace[back].row, right, on[back], carried.empty() ? on[back] : carried[back], back,
+               back >= born});
   }
   return sketches;
 }
@@ -137,18 +152,21 @@ std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, st
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
                                const LookedBack& back) noexcept {
-  const auto& [row, right, on, lag, before_birth] = back;
+  const auto& [row, right, on, carried, lag, before_birth] = back;
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
     const double now = right * on.still;
     if (probability(waiting) > now) {
-      waiting.on = {std::min(waiting.on.still, 1.0 - now), std::min(waiting.on.left, 1.0 - now)};
+      for (TraceSpan::On* const its : {&waiting.on, &waiting.carried}) {
+        *its = {std::min(its->still, 1.0 - now), std::min(its->left, 1.0 - now)};
+      }
       return;
     }
   }
   waiting.right = same ? std::max(waiting.right, right) : right;
   waiting.on = on;
+  waiting.carried = carried;
   waiting.lag = lag;
   waiting.row = row;
   waiting.before_birth = before_birth;
@@ -203,7 +221,10 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - frame >= patience_;
-    if (late || is_sure(map, waiting) || !waiting.readable) give(belief, map, waiting);
+    if (!late && !is_sure(map, waiting) && waiting.readable) continue;
+    give(belief, map, waiting);
+    const Answer& answer = answers_[given_ - 1];
+    if (!grows_ && answer.gate == Gate::match) jump_rate_.take(map, frame, waiting.row, oldest);
   }
   while (first_ < end_ && !at(first_).waits) ++first_;
 }
@@ -213,7 +234,7 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
 /// what is said has to be enough even if the trace has been left since.
 bool PendingAnswers::is_sure(const PlaceMap& map, const Waiting& waiting) noexcept {
   return waiting.believed && waiting.lag >= 2 * after_centre_ &&
-         (grows_ || waiting.right * waiting.on.left >= least_before_calibration_) &&
+         (grows_ || waiting.right * waiting.carried.left >= least_before_calibration_) &&
          told(map, waiting) >= least_before_calibration_;
 }
 
@@ -235,8 +256,9 @@ bool PendingAnswers::meets_another(const PlaceMap& map, const Waiting& waiting) 
 /// What is told of a frame, before it is calibrated.
 double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcept {
   const double is_there = probability(waiting);
-  if (is_there <= most_at_a_meeting || !meets_another(map, waiting)) return is_there;
-  return most_at_a_meeting;
+  if (is_there <= most_in_doubt) return is_there;
+  if (meets_another(map, waiting)) return most_in_doubt;
+  return std::min(is_there, std::max(most_in_doubt, probability_if_carried(waiting)));
 }
 
 void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept {
@@ -353,6 +375,7 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
 }
 
 void PendingAnswers::removed(std::size_t row) noexcept {
+  jump_rate_.removed(row);
   for (Waiting& waiting : waiting_) {
     if (waiting.row > row) --waiting.row;
     if (waiting.likeliest != none && waiting.likeliest > row) --waiting.likeliest;
@@ -363,6 +386,7 @@ void PendingAnswers::removed(std::size_t row) noexcept {
 }
 
 void PendingAnswers::inserted(std::size_t row) noexcept {
+  jump_rate_.inserted(row);
   for (Waiting& waiting : waiting_) {
     if (waiting.row >= row) ++waiting.row;
     if (waiting.likeliest != none && waiting.likeliest >= row) ++waiting.likeliest;

@@ -24,11 +24,12 @@ constexpr double returns = 1e-5;
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
 /// none.
 /// @param least half of what is new of this drive's frames
-Chances chances_of(double change, double least) {
+/// @param jumps added to the chance of an end
+Chances chances_of(double change, double least, double jumps) {
   constexpr double all = 0.6;
   constexpr double goes_on = 0.15;
   const bool cut = change > all && least < goes_on;
-  return cut ? Chances{0.9, 0.95} : usual_chances;
+  return cut ? Chances{0.9, 0.95} : Chances{usual_chances.begins, usual_chances.ends + jumps};
 }
 
 /// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
@@ -64,7 +65,7 @@ using Pair = std::array<double, 2>;
 /// How likely the frames that follow are, by where the robot is.
 struct Backward {
   Pair fresh{1.0, 0.0};
-  Pair on{1.0, usual_chances.ends};
+  Pair on;
   Pair gone{1.0, 1.0};
 
   /// To the frame before. @param likelier, gone_likelier as `Forward` has them, of the frame that
@@ -105,14 +106,15 @@ void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agre
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
                                                double before, double usual, double least,
-                                               std::size_t asked) noexcept {
-  double fresh = 1.0 - before;
+                                               double jumps, std::size_t asked) noexcept {
+  constexpr double forgotten = 10.0;
+  double fresh = std::max(1.0 - before, std::min(1.0, forgotten * jumps));
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain);
-    const Chances chances = chances_of(step.change, least);
+    const Chances chances = chances_of(step.change, least, jumps);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
       const double comes_back = gone * returns;
@@ -130,7 +132,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     }
     forward_[back] = {fresh, on, gone, likelier, gone_likelier};
   }
-  Backward after;
+  Backward after{.on = {1.0, usual_chances.ends + jumps}};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     Pair share;
@@ -139,7 +141,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       share[i] = is / (is + here.fresh * after.fresh[i] + here.gone * after.gone[i]);
     }
     on_[back] = {share[0], share[1]};
-    after.step(here.likelier, here.gone_likelier, chances_of(trace[back].change, least));
+    after.step(here.likelier, here.gone_likelier, chances_of(trace[back].change, least, jumps));
   }
   return on_.first(asked);
 }

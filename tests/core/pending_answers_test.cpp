@@ -112,6 +112,30 @@ TEST(PendingAnswers, WaitWhileALocalisingRobotMayHaveLeft) {
   }
 }
 
+/// The robot stands at the end of each piece of its way, so that nothing says when it was carried
+/// away to the next.
+TEST(PendingAnswers, AreTheLessSureTheOftenerTheRobotIsCarriedAway) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  constexpr std::size_t drives = 40;
+  constexpr std::size_t piece = 50;
+  oracle::Vectors query;
+  std::vector<std::optional<std::size_t>> rows;
+  for (std::size_t i = 0; i < 12 * piece; ++i) {
+    const std::size_t first = i / piece % 2 == 0 ? 20 : 120;
+    rows.push_back(first + std::min(i % piece, drives));
+    query.push_back(known[*rows.back()]);
+  }
+  std::vector<std::size_t> accepted(12, 0);
+  for (const Answer& answer : answers_with_lines(query, rows)) {
+    accepted[static_cast<std::size_t>(answer.frame) / piece] +=
+        static_cast<std::size_t>(answer.gate == Gate::match);
+  }
+  for (std::size_t i = 1; i < accepted.size(); ++i) {
+    EXPECT_LT(accepted[i] + 5, accepted[0]) << i;
+    EXPECT_GT(accepted[i], 30U) << i;
+  }
+}
+
 /// Which side of a jump a frame was on is known less well than where either side is.
 TEST(PendingAnswers, AreNotSureOfTheFramesWhereTwoTracesMeet) {
   const oracle::Vectors known = test::way(1, 200, 0.3F, 2);

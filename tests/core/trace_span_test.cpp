@@ -25,6 +25,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     const std::size_t frames = 1 + random() % 40;
     const double before = round == 0 ? 0.0 : share();
     const double usual = share();
+    const double jumps = round % 3 == 0 ? 0.0 : 0.2 * share();
     std::vector<BeliefTraces::Step> trace;
     // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
@@ -49,7 +50,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     };
     std::vector<BeliefTraces::Step> less = trace;
     TraceSpan::take_usual(less, agreed, born, usual, least);
-    const auto found = span.find(less, before, usual, least, asked);
+    const auto found = span.find(less, before, usual, least, jumps, asked);
     ASSERT_EQ(found.size(), asked);
     // How likely a frame is, in a state, after that of the frame before.
     enum State : std::size_t { fresh, on, gone };
@@ -65,7 +66,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     const auto moves = [&](std::size_t i, State from, State to) {
       if (i == 0) return from == to ? 1.0 : 0.0;
       const double begins = is_cut(i) ? 0.9 : 0.01;
-      const double ends = is_cut(i) ? 0.95 : 0.001;
+      const double ends = is_cut(i) ? 0.95 : 0.001 + jumps;
       const std::array<std::array<double, 3>, 3> chances{
           {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
       return chances[from][to];
@@ -76,7 +77,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       double left;
     };
     const auto likely = [&](std::size_t on_at) {
-      std::array<double, 3> ways{1.0 - before, 1.0, 0.0};
+      std::array<double, 3> ways{std::max(1.0 - before, std::min(1.0, 10.0 * jumps)), 1.0, 0.0};
       for (std::size_t i = 0; i < frames; ++i) {
         std::array<double, 3> next{};
         for (const State to : {fresh, on, gone}) {
@@ -88,7 +89,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
         ways = next;
       }
       // That it is left with the frame to come, at the latest.
-      return Likely{ways[fresh] + ways[on] + ways[gone], 0.001 * ways[on] + ways[gone]};
+      return Likely{ways[fresh] + ways[on] + ways[gone], (0.001 + jumps) * ways[on] + ways[gone]};
     };
     const Likely all = likely(frames);
     for (std::size_t i = frames - asked; i < frames; ++i) {
@@ -108,7 +109,7 @@ TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
     trace.resize(50, {0, gain, 0.5, 0.5});
     trace.resize(70, {0, 1.0, 0.5, 0.5});
-    const auto on = span.find(trace, 0.0, 0.0, 0.25, trace.size());
+    const auto on = span.find(trace, 0.0, 0.0, 0.25, 0.0, trace.size());
     EXPECT_EQ(on[35].still > 0.99, gain > -0.5) << on[35].still;
     EXPECT_EQ(on[35].still < 0.01, gain < -0.5) << on[35].still;
     EXPECT_GT(on[10].still, 0.99);
@@ -128,7 +129,7 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
   }
   for (const double least : {0.05, 0.25}) {
     SCOPED_TRACE(least);
-    const auto on = span.find(trace, 0.0, 0.0, least, trace.size());
+    const auto on = span.find(trace, 0.0, 0.0, least, 0.0, trace.size());
     const bool sees_cuts = least < 0.15;
     EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
@@ -148,10 +149,10 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
     constexpr double least = 0.25;
     std::vector<BeliefTraces::Step> all = trace;
     TraceSpan::take_usual(all, 30, 30, usual, least);
-    EXPECT_GT(span.find(all, 0.0, usual, least, 30)[29].still, 0.5);
+    EXPECT_GT(span.find(all, 0.0, usual, least, 0.0, 30)[29].still, 0.5);
     TraceSpan::take_usual(trace, 20, 30, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 30)[25].still > 0.5, gain > 0.5);
-    EXPECT_GT(span.find(trace, 0.0, usual, least, 30)[15].still, 0.99);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[25].still > 0.5, gain > 0.5);
+    EXPECT_GT(span.find(trace, 0.0, usual, least, 0.0, 30)[15].still, 0.99);
   }
 }
 
@@ -165,7 +166,7 @@ TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
     constexpr double usual = 0.1;
     constexpr double least = 0.25;
     TraceSpan::take_usual(trace, 20, 20, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 30)[29].still > 0.5, gain > 0.0);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[29].still > 0.5, gain > 0.0);
   }
 }
 
@@ -181,7 +182,7 @@ TEST(TraceSpan, LastsWhereAFrameGainsLessThanIsUsualButMoreThanOneRowDoes) {
     std::vector<BeliefTraces::Step> trace(20, {0, gain, 0.5, 0.5});
     trace.resize(50, {0, 1.0, 0.5, 0.5});
     TraceSpan::take_usual(trace, 50, 50, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 50)[0].still > 0.5, gain > 0.0);
+    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 50)[0].still > 0.5, gain > 0.0);
   }
 }
 
@@ -190,7 +191,7 @@ TEST(TraceSpan, NoTraceIsTooLong) {
   TraceSpan span(memory.arena, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
     const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, trace.size())) {
+    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, 0.0, trace.size())) {
       EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
       EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
     }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/jump_rate.hpp"
 #include "seqloop/detail/place_belief.hpp"
 #include "seqloop/detail/trace_span.hpp"
 #include "seqloop/detail/trajectories.hpp"
@@ -91,6 +92,7 @@ class PendingAnswers {
     std::size_t row;        // there
     double right;           // that the trace is right: the most that was ever said
     TraceSpan::On on;       // that the frame lies on it
+    TraceSpan::On carried;  // the same, if the robot is carried away as often as it was
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
     double new_place;       // belief in none, as it came
     std::size_t likeliest;  // row, as it came; `none` where there was none
@@ -102,10 +104,11 @@ class PendingAnswers {
   /// What a trace that came through a frame says of it.
   struct LookedBack {
     std::size_t row;
-    double right;       // that the trace is right
-    TraceSpan::On on;   // that the frame lies on it
-    std::uint64_t lag;  // frames that have come since
-    bool before_birth;  // of the trace, which was followed back
+    double right;           // that the trace is right
+    TraceSpan::On on;       // that the frame lies on it
+    TraceSpan::On carried;  // as `Waiting` has it
+    std::uint64_t lag;      // frames that have come since
+    bool before_birth;      // of the trace, which was followed back
   };
 
   /// A power of two, so that nothing is divided: a step asks for this many hundred times.
@@ -117,6 +120,7 @@ class PendingAnswers {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
+  [[nodiscard]] static double probability_if_carried(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool meets_another(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
@@ -148,7 +152,9 @@ class PendingAnswers {
   std::span<FoundLine> lines_;           // [the same, lines_kept]
   std::span<Answer> answers_;            // [patience + frames at once + 1]
   std::span<BeliefTraces::Step> trace_;  // [PlaceBelief::depth]
+  std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
+  JumpRate jump_rate_;
 };
 
 }  // namespace seqloop

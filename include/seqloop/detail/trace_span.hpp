@@ -41,11 +41,13 @@ class TraceSpan {
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
   /// @param usual  as `take_usual` has it
   /// @param least  as `take_usual` has it
+  /// @param jumps  the chance that the robot is carried away with a frame, beyond what is usual, 0
+  ///               .. 0.5. The higher it is, the less does `before` speak for the oldest frame
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
   /// @return [asked] frame by frame as the trace; until the next call
   /// Work: as many exponentials as the trace has frames. Allocates: never.
   std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
-                           double least, std::size_t asked) noexcept;
+                           double least, double jumps, std::size_t asked) noexcept;
 
  private:
   /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.

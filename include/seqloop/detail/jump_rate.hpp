@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "seqloop/place_map.hpp"
+
+namespace seqloop {
+
+/// How often a robot is carried away while it localises: by the accepted answers that no drive
+/// leads on to from those before them. One that never was is trusted as if it never will be.
+/// Source: src/README.md, section 6.6.
+class JumpRate {
+ public:
+  /// Takes an accepted answer. Those of frames before one that was taken already are passed over.
+  /// @param row    where the robot was, of the map
+  /// @param oldest frame that belongs together with it: the way from one before it is not known
+  /// Work: log sessions. Allocates: never.
+  void take(const PlaceMap& map, std::uint64_t frame, std::size_t row,
+            std::uint64_t oldest) noexcept;
+
+  /// The chance that the robot is carried away with a frame, 0 .. 0.5: 0 where it never was, else
+  /// eight times as often as it was seen to be. Windows overlap, so that frames on either side of a
+  /// jump say more for one trace than they know.
+  [[nodiscard]] double chance() const noexcept;
+
+  /// A row went from the map: those behind it are counted one lower.
+  void removed(std::size_t row) noexcept {
+    if (last_ && last_->row > row) --last_->row;
+  }
+
+  /// A row came into the map: those from it on are counted one higher.
+  void inserted(std::size_t row) noexcept {
+    if (last_ && last_->row >= row) ++last_->row;
+  }
+
+ private:
+  struct Last {
+    std::uint64_t frame;
+    std::size_t row;
+  };
+
+  std::optional<Last> last_;
+  std::uint64_t answers_ = 0;
+  std::uint64_t jumps_ = 0;
+};
+
+}  // namespace seqloop

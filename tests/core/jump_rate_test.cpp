@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What counts as a jump, and what does not.
+#include "seqloop/detail/jump_rate.hpp"
+
+#include <vector>
+
+#include "core/matcher.hpp"
+
+namespace seqloop {
+namespace {
+
+constexpr std::uint64_t all_belong = 0;
+
+/// A map of sessions of so many places each.
+PlaceMap map_of(const std::vector<std::size_t>& sessions) {
+  MatcherConfig config;
+  config.standardisation.on = false;
+  std::size_t places = 0;
+  for (const std::size_t session : sessions) places += session;
+  PlaceMap map(config, {places, 4, sessions.size()});
+  const std::vector<float> descriptor{1.0F, 2.0F, 3.0F, 4.0F};
+  for (const std::size_t session : sessions) {
+    EXPECT_TRUE(map.begin_session());
+    for (std::size_t i = 0; i < session; ++i) EXPECT_TRUE(map.add(descriptor));
+  }
+  return map;
+}
+
+TEST(JumpRate, IsNoneWhereEachAnswerLeadsOnToTheNext) {
+  const PlaceMap map = map_of({400});
+  JumpRate rate;
+  std::uint64_t frame = 0;
+  std::size_t row = 0;
+  // Stands, drives at twice the pace, and is not seen for fifty frames.
+  for (; frame < 30; ++frame) rate.take(map, frame, row, all_belong);
+  for (; frame < 130; ++frame) rate.take(map, frame, row += 2, all_belong);
+  rate.take(map, frame += 50, row += 100, all_belong);
+  // Answers may be off by some rows.
+  rate.take(map, ++frame, row - 20, all_belong);
+  rate.take(map, ++frame, row, all_belong);
+  EXPECT_EQ(rate.chance(), 0.0);
+}
+
+TEST(JumpRate, IsEightTimesTheJumpsPerAnswerAndThreeHundred) {
+  const PlaceMap map = map_of({400});
+  JumpRate rate;
+  EXPECT_EQ(rate.chance(), 0.0);
+  rate.take(map, 0, 100, all_belong);
+  rate.take(map, 1, 123, all_belong);  // two on, and more than twenty off
+  EXPECT_DOUBLE_EQ(rate.chance(), 8.0 * 1.0 / 302.0);
+  rate.take(map, 2, 102, all_belong);  // back by more than twenty
+  EXPECT_DOUBLE_EQ(rate.chance(), 8.0 * 2.0 / 303.0);
+  for (std::uint64_t frame = 3; frame < 200; ++frame) {
+    rate.take(map, frame, frame % 2 == 0 ? 10 : 300, all_belong);
+  }
+  EXPECT_EQ(rate.chance(), 0.5);
+}
+
+TEST(JumpRate, PassesOverAnswersThatComeLate) {
+  const PlaceMap map = map_of({400});
+  JumpRate rate;
+  rate.take(map, 50, 300, all_belong);
+  rate.take(map, 20, 10, all_belong);
+  rate.take(map, 51, 301, all_belong);
+  EXPECT_EQ(rate.chance(), 0.0);
+}
+
+TEST(JumpRate, KnowsNothingOfTheWayThroughAGap) {
+  const PlaceMap map = map_of({400});
+  JumpRate rate;
+  rate.take(map, 50, 10, all_belong);
+  rate.take(map, 60, 300, 55);
+  EXPECT_EQ(rate.chance(), 0.0);
+  rate.take(map, 61, 10, 55);
+  EXPECT_GT(rate.chance(), 0.0);
+}
+
+TEST(JumpRate, IsNoneBetweenVisitsOfOnePlace) {
+  PlaceMap map = map_of({100, 100});
+  for (std::size_t i = 0; i < 60; ++i) map.link(100 + i, i);
+  JumpRate rate;
+  rate.take(map, 0, 30, all_belong);
+  rate.take(map, 1, 132, all_belong);   // the same place
+  rate.take(map, 2, 33, all_belong);    // and back
+  rate.take(map, 22, 153, all_belong);  // twenty frames on, in the other session
+  rate.take(map, 23, 54, all_belong);
+  EXPECT_EQ(rate.chance(), 0.0);
+  rate.take(map, 24, 190, all_belong);  // a place of the second session alone
+  EXPECT_GT(rate.chance(), 0.0);
+}
+
+TEST(JumpRate, KeepsItsRowAsOthersComeAndGo) {
+  const PlaceMap map = map_of({400});
+  for (const bool told : {true, false}) {
+    SCOPED_TRACE(told);
+    JumpRate rate;
+    rate.take(map, 0, 100, all_belong);
+    for (std::size_t i = 0; told && i < 60; ++i) rate.inserted(i);
+    rate.take(map, 1, 160, all_belong);
+    EXPECT_EQ(rate.chance() == 0.0, told);
+    JumpRate back;
+    back.take(map, 0, 160, all_belong);
+    for (std::size_t i = 0; told && i < 60; ++i) back.removed(i);
+    back.take(map, 1, 100, all_belong);
+    EXPECT_EQ(back.chance() == 0.0, told);
+  }
+}
+
+}  // namespace
+}  // namespace seqloop
