@@ -15,13 +15,6 @@ namespace {
 // Rows among which the one that is missed least goes, each time a full map thins out.
 constexpr std::size_t thinned_among = 64;
 
-/// Whether places are linked to those that they are visits of: a map of one session that does not
-/// change has no visits.
-bool links(const MatcherConfig& config, const Capacity& capacity) {
-  return config.decision == Decision::probability &&
-         (config.use == Use::close_loops || capacity.sessions > 1);
-}
-
 /// Whether descriptors come as they are, and are standardised here: to a map that is filled by the
 /// drive alone they come standardised.
 bool learns(const MatcherConfig& config, const Capacity& capacity) {
@@ -64,8 +57,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
                                              DescriptorRows::sketch_room(rows_.form()))),
       spacing_(
           arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
-      first_visits_(arena.take<std::uint64_t>("visits of one place",
-                                              links(config, capacity) ? capacity.places : 0)) {}
+      first_visits_(arena.take<std::uint64_t>(
+          "visits of one place", config.decision == Decision::probability ? capacity.places : 0)) {}
 
 bool PlaceMap::begin_session() noexcept {
   if (!order_.begin_session()) return false;

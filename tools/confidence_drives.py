@@ -119,6 +119,17 @@ def garage(maker: Maker):
     return maker.real(GARAGE), None, read_truth(maker.tools.data / GARAGE_TRUTH, FIRST_LAP)
 
 
+def later_laps(maker: Maker):
+    """The second half of the garage's laps, in a map of the first."""
+    rows = maker.real(GARAGE)
+    half = len(rows) // 2
+    truth: Truth = {}
+    for frame, places in read_truth(maker.tools.data / GARAGE_TRUTH, FIRST_LAP).items():
+        if frame >= half:
+            truth[frame - half] = [place for place in places if place < half]
+    return rows[half:], rows[:half], truth
+
+
 def standing(source: str, frame: int, going_on: int):
     """To a frame, 5,000 noisy pictures of it, and on."""
     def make(maker: Maker):
@@ -164,6 +175,7 @@ def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
         Drive("nordland-winter-summer", localise(summer, winter), (10, 1), NORDLAND),
         Drive("nordland-loop", one_after_the_other(summer, winter), (10, 1), NORDLAND),
         Drive("garage", garage, (12, 27), (GARAGE, GARAGE_TRUTH)),
+        Drive("garage-later-laps", later_laps, (12, 27), (GARAGE, GARAGE_TRUTH)),
         Drive("standing-nordland", standing(summer, 300, 299), (10, 2), (summer,)),
         Drive("standing-garage", standing(GARAGE, 150, 0), (10, 2), (GARAGE,)),
         Drive("covered-lens", one_after_the_other(day, night, 3000), (10, 2), GARDENS)]

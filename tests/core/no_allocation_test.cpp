@@ -6,7 +6,9 @@
 
 #include "core/allocation_guard.hpp"
 #include "core/matcher.hpp"
+#include "core/ways.hpp"
 #include "seqloop/principal_components.hpp"
+#include "seqloop/visit_finder.hpp"
 
 namespace seqloop {
 namespace {
@@ -150,6 +152,24 @@ TEST_F(NoAllocation, InRemovingComponents) {
   const AllocationGuard guard;
   components.remove(std::span(pictures).first(1000), std::span(pictures).first(1000));
   EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST_F(NoAllocation, WhereVisitsOfAReferenceAreLookedFor) {
+  const oracle::Vectors lap = test::way(1, 150, 0.3F, 1);
+  const MatcherConfig config;
+  PlaceMap map(config, {2 * lap.size(), lap.front().size()});
+  for (const auto& place : lap) static_cast<void>(map.learn(place));
+  VisitFinder visits(config, map, map.capacity());
+  const AllocationGuard guard;
+  for (int i = 0; i < 2; ++i) {
+    for (const auto& place : lap) {
+      EXPECT_TRUE(map.add(place));
+      visits.take(place);
+    }
+  }
+  visits.link(map);
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_TRUE(map.same_place(75, 225));
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Recall at 100 % precision on the real drives: the numbers that tools/README.md names, with room
 // for what another build of OpenCV rounds otherwise.
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "evaluation/csv.hpp"
 #include "program/program.hpp"
@@ -172,6 +176,43 @@ ds = 40
   for (const auto& [row, wanted] : {std::pair{0U, 0.99}, {1U, 0.99}, {2U, 0.8}, {3U, 0.8}}) {
     EXPECT_NEAR(recalls[row], wanted, 0.02) << row;
   }
+}
+
+/// A reference of two laps and a half; the robot drives two more.
+TEST_F(Accuracy, ARobotLocalisesInAReferenceOfLaps) {
+  SEQLOOP_DATA_OR_SKIP(shared);
+  constexpr int known = 600;
+  for (int i = 0; i < 2 * known; ++i) {
+    const std::string name = fmt::format("{:06}.jpg", i);
+    const std::filesystem::path folder = file(i < known ? "reference" : "query");
+    std::filesystem::create_directories(folder);
+    std::filesystem::create_symlink(
+        std::filesystem::absolute(shared / "data/garage_laps/images" / name), folder / name);
+  }
+  for (const auto& drive : {"reference", "query"}) {
+    const auto outcome = run(fmt::format("describe --source {0} --out {0}.npy", drive));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  const auto matched = run("match --reference reference.npy --query query.npy --out m.csv");
+  ASSERT_EQ(matched.exit_code, 0) << matched.err;
+  const auto ran = run("run --reference reference --source query.npy --out lines.jsonl");
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  std::size_t accepted = 0;
+  std::istringstream rows(test::read_all(file("m.csv")));
+  for (std::string row; std::getline(rows, row);) {
+    accepted += static_cast<std::size_t>(row.ends_with(",1"));
+  }
+  EXPECT_GE(accepted, 570U);
+  // The same where the reference is pictures.
+  std::size_t answered = 0;
+  std::istringstream lines(test::read_all(file("lines.jsonl")));
+  for (std::string line; std::getline(lines, line);) {
+    const auto report = nlohmann::json::parse(line);
+    for (const auto& answer : report["answers"]) {
+      answered += static_cast<std::size_t>(answer["status"] == "match");
+    }
+  }
+  EXPECT_EQ(answered, accepted);
 }
 
 }  // namespace

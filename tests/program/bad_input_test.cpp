@@ -421,6 +421,22 @@ TEST_F(BadInput, MatchListsAndTruths) {
   expect_refused("eval --matches list.csv --truth t.csv --unlisted right", {"'right'", "t.csv"});
 }
 
+/// It is no fault, but the user is told what is not done.
+TEST_F(BadInput, AReferenceOfMorePlacesThanAreLookedThrough) {
+  const oracle::Vectors drive = oracle::drive(1, 20'001, 12);
+  write_npy("long.npy", drive);
+  const std::string match = "match --query good.npy --out m.csv --reference long.npy";
+  const std::string told = "places after the first 20000 of the reference";
+  const test::Outcome outcome = run(match);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("seqloop run --source REFERENCE --map FILE"), std::string::npos);
+  // By uniqueness visits are nothing.
+  EXPECT_EQ(run(match + " --decide-by uniqueness").err.find(told), std::string::npos);
+  write_npy("long.npy", oracle::Vectors(drive.begin(), drive.end() - 1));
+  EXPECT_EQ(run(match).err.find(told), std::string::npos);
+}
+
 TEST_F(BadInput, Cameras) {
   folder_.write("file.txt", "no camera");
   expect_refused("camera --device /no/camera", {"/no/camera", "there is no camera"});

@@ -47,8 +47,8 @@ class PendingAnswers {
   /// Takes in what is believed at the newest frame.
   /// @param oldest frame that belongs together with it
   /// @return pairs of sketches compared
-  /// Work: a pass over the frames that wait, as many exponentials as patience has frames, and that
-  /// of `FirstFrames::follow`. Allocates: never.
+  /// Work: a pass over the frames that wait, as many exponentials as patience has frames, twice
+  /// where the robot has been carried away, and that of `FirstFrames::follow`. Allocates: never.
   std::size_t believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
                       std::uint64_t oldest) noexcept;
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,8 +13,15 @@
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/pipeline.hpp"
+#include "seqloop/visit_finder.hpp"
 
 namespace seqloop::program {
+namespace {
+
+// A second or so: whoever has a larger map keeps it in a file, where its visits are kept, too.
+constexpr std::size_t most_looked_through = 20'000;
+
+}  // namespace
 
 std::size_t descriptor_size(const FrameSource& drive, const Describer* describer) {
   const auto* described = dynamic_cast<const files::DescriptorSource*>(&drive);
@@ -33,6 +41,10 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   std::size_t places = 0;
   std::size_t readable = 0;
   std::size_t blank_frames = 0;
+  std::optional<VisitFinder> visits;
+  if (VisitFinder::is_needed(config)) {
+    visits.emplace(config, map, std::min(map.capacity(), most_looked_through));
+  }
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
     stop_if_interrupted();
@@ -59,6 +71,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
                                     map.capacity()),
                         "raise --max-places"});
     }
+    if (visits && places <= most_looked_through) visits->take(last);
     if (learns) {
       learnt.push_back(last);
     } else {
@@ -70,6 +83,14 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   if (readable == 0) throw SetupError(Fault{"reference", "none of its frames can be read"});
   for (const std::span<const float> place : learnt) static_cast<void>(map.learn(place));
   for (const std::span<const float> place : learnt) static_cast<void>(map.add(place));
+  if (visits) visits->link(map);
+  if (visits && places > most_looked_through) {
+    progress.tell(fmt::format(
+        "places after the first {} of the reference are not looked through for other visits of one "
+        "place: if it has any, make a map of it once with 'seqloop run --source REFERENCE --map "
+        "FILE', and localise in that",
+        most_looked_through));
+  }
   return blank_frames;
 }
 
