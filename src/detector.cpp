@@ -188,8 +188,8 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   }
   if (config_.decision == Decision::probability) {
     if (readable) {
-      report.work.sketches +=
-          belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows});
+      report.work.sketches += belief_.observe(
+          {&queries_, map_, &proposals_, newest, window_began_, rows}, pending_.jumps());
     } else {
       belief_.pass(map_->order(), 1, 0);
     }

@@ -27,6 +27,11 @@ constexpr double coming_at_first = 0.02;
 constexpr double least_variance = 1.25;
 constexpr double least_variance_of_new_places = 5.0;
 
+// How much of a hypothesis' pace is its last move; and the chance of a jump from which on rows that
+// go on at another pace than the robot are likelier to be of another place.
+constexpr double last_move = 0.1;
+constexpr double jumps_often = 0.01;
+
 constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
 constexpr std::size_t born_most = 16;
@@ -61,6 +66,22 @@ std::pair<double, std::size_t> highest(std::span<double> values, std::size_t n) 
   }
 }
 
+/// Chances that a row goes on by 0, 1 or 2.
+using Moves = std::array<double, 3>;
+
+/// The same of a robot that goes on by so many rows a frame, 0 .. 2: between those of one that
+/// stays, goes by one, and by two.
+Moves moves_at(double pace) {
+  constexpr std::array<Moves, 3> of{{{0.92, 0.06, 0.02}, {0.06, 0.88, 0.06}, {0.02, 0.06, 0.92}}};
+  const std::size_t slower = pace < 1.0 ? 0 : 1;
+  const double faster = pace - static_cast<double>(slower);
+  Moves moves;
+  for (std::size_t by = 0; by < moves.size(); ++by) {
+    moves[by] = (1.0 - faster) * of[slower][by] + faster * of[slower + 1][by];
+  }
+  return moves;
+}
+
 bool used(const MatcherConfig& config) { return config.decision == Decision::probability; }
 
 }  // namespace
@@ -74,7 +95,7 @@ PlaceBelief::PlaceBelief(Arena& arena, const MatcherConfig& config)
       first_frames_(arena, used(config)),
       traces_(arena, depth(config), most) {}
 
-std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
+std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   sketches_ = 0;
   likeliest_.reset();
   prefetch(view);
@@ -85,7 +106,7 @@ std::size_t PlaceBelief::observe(const SceneView& view) noexcept {
   }
   novelty_ = scene->novelty;
   if (has_earlier_drives(view)) first_frames_.take(view, *scene);
-  move(view.map->order(), scene->moves());
+  move(view.map->order(), *scene, jumps);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const bool begins = weighed_++ < FirstFrames::most;
@@ -119,14 +140,30 @@ void PlaceBelief::prefetch(const SceneView& view) noexcept {
   }
 }
 
+/// Whether a row goes on as its hypothesis has done: a robot may pass an earlier drive's places at
+/// another pace than that drive did.
+bool PlaceBelief::goes_at_its_pace(const PlaceOrder& order, std::size_t row,
+                                   double jumps) const noexcept {
+  return jumps <= jumps_often && (localises_ || row < order.session(order.sessions() - 1).first);
+}
+
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
-void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) noexcept {
+void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps) noexcept {
+  std::array<Moves, most> moves;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const bool at_its_pace = scene.drives() && goes_at_its_pace(order, rows_[i].row, jumps);
+    if (at_its_pace) {
+      moves[i] = moves_at(rows_[i].pace);
+    } else {
+      std::ranges::copy(scene.moves(), moves[i].begin());
+    }
+  }
   moved_count_ = 0;
   ended_ = {};
   std::array<std::size_t, 3> next{};
   while (true) {
     std::size_t row = static_cast<std::size_t>(-1);
-    for (std::size_t by = 0; by < kernel.size(); ++by) {
+    for (std::size_t by = 0; by < next.size(); ++by) {
       if (next[by] < count_) row = std::min(row, rows_[next[by]].row + by);
     }
     if (row == static_cast<std::size_t>(-1)) break;
@@ -134,10 +171,10 @@ void PlaceBelief::move(const PlaceOrder& order, std::span<const double> kernel) 
     double best = 0.0;
     double mass = 0.0;
     bool reached = false;
-    for (std::size_t by = 0; by < kernel.size(); ++by) {
+    for (std::size_t by = 0; by < next.size(); ++by) {
       if (next[by] == count_ || rows_[next[by]].row + by != row) continue;
       const std::size_t from = next[by]++;
-      const double part = kernel[by] * rows_[from].mass;
+      const double part = moves[from][by] * rows_[from].mass;
       if (row >= order.size() || order.apart(rows_[from].row, row) != by) {
         ended_.mass += part;
         if (part > ended_.most && rows_[from].row < order.size())
@@ -223,8 +260,15 @@ void PlaceBelief::hand_over(const PlaceMap& map) noexcept {
 }
 
 /// Makes a hypothesis of what has moved.
-void PlaceBelief::take_on(Hypothesis& at, const Moved& moved) const noexcept {
-  at = moved.parent == BeliefTraces::none ? Hypothesis{} : rows_[moved.parent];
+void PlaceBelief::take_on(Hypothesis& at, const Moved& moved, bool drives) const noexcept {
+  if (moved.parent == BeliefTraces::none) {
+    at = {};
+  } else {
+    at = rows_[moved.parent];
+    // More where it is handed over from another visit of the place.
+    const std::size_t by = moved.row - at.row;
+    if (drives && by <= 2) at.pace += last_move * (static_cast<double>(by) - at.pace);
+  }
   at.row = moved.row;
   at.mass = moved.mass;
   at.parent = moved.parent;
@@ -247,7 +291,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
     Hypothesis& at = next_[i];
-    take_on(at, moved_[i]);
+    take_on(at, moved_[i], scene.drives());
     const auto [l, contrast] =
         gain_of(scene, *view.map, view.rows, newest, before, at.row, sketches_);
     gains[i] = l;

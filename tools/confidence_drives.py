@@ -98,6 +98,19 @@ def localise(query: str, reference: str):
     return make
 
 
+def at_pace(query: str, reference: str, pace: float):
+    """Localising at another pace than the reference: frames left out of the faster of the two."""
+    def make(maker: Maker):
+        rows, known = maker.real(query), maker.real(reference)
+        if pace > 1.0:
+            frames = (np.arange(int(len(rows) / pace)) * pace).astype(int)
+            return rows[frames], known, {i: [int(f)] for i, f in enumerate(frames)}
+        places = (np.arange(int(len(known) * pace)) / pace).astype(int)
+        truth = {i: [int(np.abs(places - i).argmin())] for i in range(len(rows))}
+        return rows, known[places], truth
+    return make
+
+
 def one_after_the_other(first: str, second: str, between: int = 0):
     """As one drive, with so many frames of a covered lens between them."""
     def make(maker: Maker):
@@ -185,6 +198,9 @@ def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
         carried = teleports(query, reference, teleports_by * pieces, *lengths)
         name = f"teleports-{query.split('/')[-1]}"
         drives.append(Drive(name, carried, (10, exact), (query, reference)))
+    for name, query, reference in (("gardens", night, day), ("nordland", winter, summer)):
+        drives += [Drive(f"pace-{name}-{pace}", at_pace(query, reference, pace), (10, 5),
+                         (query, reference)) for pace in (0.5, 0.67, 1.5)]
     drives += [Drive(f"new-{source.split('/')[-1]}", nothing_twice(source), (10, 2), (source,))
                for source in (*GARDENS, *NORDLAND)]
     for seed in seeds:

@@ -21,10 +21,11 @@ constexpr std::size_t size = 128;
 class NaiveBelief {
  public:
   /// @param earlier_drives whether the map has places of some
-  explicit NaiveBelief(bool earlier_drives) : earlier_drives_(earlier_drives) {}
+  /// @param jumps as `PlaceBelief::observe` has it
+  NaiveBelief(bool earlier_drives, double jumps) : earlier_drives_(earlier_drives), jumps_(jumps) {}
 
   struct Row {
-    double mass = 0.0, gain = 0.0, wrong = 0.0, clear = 0.0, age = 0.0, doubt = 0.0;
+    double mass = 0.0, gain = 0.0, wrong = 0.0, clear = 0.0, age = 0.0, doubt = 0.0, pace = 1.0;
     std::vector<std::size_t> way;  // rows that it came through, the newest last
   };
 
@@ -71,12 +72,21 @@ class NaiveBelief {
       w = change * gone;
     }
     // 6.3, move
-    const std::vector<double> by =
-        w > 0.02 ? std::vector{0.06, 0.88, 0.06} : std::vector{0.45, 0.40, 0.15};
+    const auto chances = [&](double pace) -> std::vector<double> {
+      if (w <= 0.02) return {0.45, 0.40, 0.15};
+      if (!earlier_drives_ || jumps_ > 0.01) return {0.06, 0.88, 0.06};
+      // Those of one that stays, or goes by two, get more, the further its pace is from one.
+      const double off = std::abs(pace - 1.0);
+      const double other = 0.06 + 0.86 * off;
+      const double same = 0.88 - 0.82 * off;
+      const double least = 0.06 - 0.04 * off;
+      return pace < 1.0 ? std::vector{other, same, least} : std::vector{least, same, other};
+    };
     std::map<std::size_t, Row> moved;
     std::map<std::size_t, double> largest;
     double ended = 0.0;  // beyond the last row, and no other visit is known
     for (const auto& [row, old] : rows_) {
+      const std::vector<double> by = chances(old.pace);
       for (std::size_t i = 0; i < by.size(); ++i) {
         const double part = by[i] * old.mass;
         if (row + i >= view.map->size()) {
@@ -89,6 +99,7 @@ class NaiveBelief {
         if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
           largest[row + i] = part;
           here = old;
+          if (w > 0.02) here.pace = 0.9 * old.pace + 0.1 * static_cast<double>(i);
         }
         here.mass = mass;
       }
@@ -113,7 +124,7 @@ class NaiveBelief {
       Row& at = moved[found.row];
       const double old = at.mass / (at.mass + born / n);
       at = {at.mass + born / n, at.gain * old, at.wrong * old, at.clear * old,
-            at.age * old,       at.doubt,      at.way};
+            at.age * old,       at.doubt,      at.pace,        at.way};
     }
     // Weigh.
     std::map<std::size_t, double> gains;
@@ -232,24 +243,25 @@ class NaiveBelief {
   }
 
   bool earlier_drives_;
+  double jumps_;
   int weighed_ = 0;
   std::map<std::size_t, Row> rows_;
   std::vector<Showed> showed_;
 };
 
 void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vectors& query,
-                               Use use = Use::localise) {
+                               Use use = Use::localise, double jumps = 0.0) {
   MatcherConfig config;
   config.use = use;
   config.standardisation.on = false;
   config.relocalising.rows_scanned = 150;
   Seen seen(places, config);
   PlaceBelief belief(seen.memory.arena, config);
-  NaiveBelief naive(use == Use::localise);
+  NaiveBelief naive(use == Use::localise, jumps);
   std::size_t judged = 0;
   for (const auto& descriptor : query) {
     const SceneView view = seen.take(descriptor);
-    static_cast<void>(belief.observe(view));
+    static_cast<void>(belief.observe(view, jumps));
     naive.observe(view);
     SCOPED_TRACE("frame " + std::to_string(view.newest));
     ASSERT_NEAR(belief.new_place(), naive.new_place, 1e-9);
@@ -273,6 +285,22 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
     SCOPED_TRACE(seed);
     expect_like_the_naive_one(test::way(seed, 200, 0.5F, 1, size),
                               test::way(seed, 200, 0.5F, 2, size));
+  }
+}
+
+TEST(PlaceBeliefOracle, AtHalfAndTwiceThePace) {
+  const oracle::Vectors known = test::way(1, 200, 0.5F, 1, size);
+  const oracle::Vectors way = test::way(1, 200, 0.5F, 2, size);
+  oracle::Vectors slow;
+  oracle::Vectors fast;
+  for (std::size_t i = 0; i < 200; ++i) {
+    slow.push_back(way[i / 2]);
+    if (i % 2 == 0) fast.push_back(way[i]);
+  }
+  for (const double jumps : {0.0, 0.02}) {
+    SCOPED_TRACE(jumps);
+    expect_like_the_naive_one(known, slow, Use::localise, jumps);
+    expect_like_the_naive_one(known, fast, Use::localise, jumps);
   }
 }
 

@@ -64,6 +64,31 @@ std::size_t accepted(const Said& said) {
   return static_cast<std::size_t>(std::ranges::count(said.answers, Gate::match, &Answer::gate));
 }
 
+/// Every so manieth frame of a way.
+oracle::Vectors thinned(const oracle::Vectors& way, double by) {
+  oracle::Vectors some;
+  for (double i = 0.0; i < static_cast<double>(way.size()); i += by) {
+    some.push_back(way[static_cast<std::size_t>(i)]);
+  }
+  return some;
+}
+
+TEST(PlaceBelief, KnowsWhereItIsAtAnotherPaceThanTheReference) {
+  constexpr float noise = 5.0F;
+  for (const double pace : {0.5, 0.7, 1.5}) {
+    SCOPED_TRACE(pace);
+    const oracle::Vectors reference = thinned(way(1, 300, noise, 1), std::max(1.0, 1.0 / pace));
+    const oracle::Vectors query = thinned(way(1, 300, noise, 2), std::max(1.0, pace));
+    const Said said = drive_through(reference, query, settings(Use::localise));
+    EXPECT_GE(accepted(said), query.size() * 9 / 10) << accepted(said);
+    for (const Answer& answer : said.answers) {
+      if (answer.gate != Gate::match) continue;
+      EXPECT_NEAR(static_cast<double>(answer.match->place),
+                  pace * static_cast<double>(answer.frame), 12.0);
+    }
+  }
+}
+
 TEST(PlaceBelief, KnowsWhereItIsOnAKnownWayEdgesIncluded) {
   const oracle::Vectors reference = way(1, 300, 0.5F, 1);
   const oracle::Vectors query = way(1, 300, 0.5F, 2);

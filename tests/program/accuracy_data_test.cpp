@@ -3,9 +3,11 @@
 // for what another build of OpenCV rounds otherwise.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "evaluation/csv.hpp"
 #include "program/program.hpp"
@@ -30,6 +32,33 @@ class Accuracy : public test::Program {
     const auto measures = nlohmann::json::parse(evaluated.out);
     std::printf("%s: %s\n", match.c_str(), measures.dump().c_str());
     return measures["recall_at_100_precision"].get<double>();
+  }
+
+  /// Pictures of a drive from one on, every so manieth, as a folder NAME and descriptors NAME.npy.
+  void describe_some(const std::filesystem::path& drive, std::size_t first, std::size_t last,
+                     std::size_t every, const std::string& name) {
+    std::vector<std::filesystem::path> pictures;
+    for (const auto& entry : std::filesystem::directory_iterator(drive)) {
+      pictures.push_back(std::filesystem::absolute(entry.path()));
+    }
+    std::ranges::sort(pictures);
+    std::filesystem::create_directories(file(name));
+    for (std::size_t i = first; i < last; i += every) {
+      std::filesystem::create_symlink(pictures.at(i),
+                                      std::filesystem::path(file(name)) / pictures[i].filename());
+    }
+    const auto outcome = run(fmt::format("describe --source {0} --out {0}.npy", name));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+
+  /// Frames of a match list that are accepted.
+  [[nodiscard]] std::size_t accepted_in(const std::string& list) const {
+    std::size_t accepted = 0;
+    std::istringstream rows(test::read_all(file(list)));
+    for (std::string row; std::getline(rows, row);) {
+      accepted += static_cast<std::size_t>(row.ends_with(",1"));
+    }
+    return accepted;
   }
 };
 
@@ -181,27 +210,14 @@ ds = 40
 /// A reference of two laps and a half; the robot drives two more.
 TEST_F(Accuracy, ARobotLocalisesInAReferenceOfLaps) {
   SEQLOOP_DATA_OR_SKIP(shared);
-  constexpr int known = 600;
-  for (int i = 0; i < 2 * known; ++i) {
-    const std::string name = fmt::format("{:06}.jpg", i);
-    const std::filesystem::path folder = file(i < known ? "reference" : "query");
-    std::filesystem::create_directories(folder);
-    std::filesystem::create_symlink(
-        std::filesystem::absolute(shared / "data/garage_laps/images" / name), folder / name);
-  }
-  for (const auto& drive : {"reference", "query"}) {
-    const auto outcome = run(fmt::format("describe --source {0} --out {0}.npy", drive));
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
+  constexpr std::size_t known = 600;
+  describe_some(shared / "data/garage_laps/images", 0, known, 1, "reference");
+  describe_some(shared / "data/garage_laps/images", known, 2 * known, 1, "query");
   const auto matched = run("match --reference reference.npy --query query.npy --out m.csv");
   ASSERT_EQ(matched.exit_code, 0) << matched.err;
   const auto ran = run("run --reference reference --source query.npy --out lines.jsonl");
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  std::size_t accepted = 0;
-  std::istringstream rows(test::read_all(file("m.csv")));
-  for (std::string row; std::getline(rows, row);) {
-    accepted += static_cast<std::size_t>(row.ends_with(",1"));
-  }
+  const std::size_t accepted = accepted_in("m.csv");
   EXPECT_GE(accepted, 570U);
   // The same where the reference is pictures.
   std::size_t answered = 0;
@@ -213,6 +229,25 @@ TEST_F(Accuracy, ARobotLocalisesInAReferenceOfLaps) {
     }
   }
   EXPECT_EQ(answered, accepted);
+}
+
+/// The robot drives at half the pace that the reference was driven at.
+TEST_F(Accuracy, ARobotLocalisesAtHalfThePace) {
+  SEQLOOP_DATA_OR_SKIP(shared);
+  describe_some(shared / "data/gardens_point/day_left", 0, 200, 2, "reference");
+  describe_some(shared / "data/gardens_point/night_right", 0, 200, 1, "query");
+  folder_.write("truth.csv", [] {
+    std::string rows = "query,reference\n";
+    for (int i = 0; i < 200; ++i) rows += fmt::format("{},{}\n", i, i / 2);
+    return rows;
+  }());
+  const auto matched = run("match --reference reference.npy --query query.npy --out m.csv");
+  ASSERT_EQ(matched.exit_code, 0) << matched.err;
+  EXPECT_GE(accepted_in("m.csv"), 190U);
+  const auto evaluated =
+      run("eval --json --matches m.csv --truth truth.csv --tolerance 5 --threshold-on probability");
+  const auto measures = nlohmann::json::parse(evaluated.out);
+  EXPECT_GE(measures["recall_at_100_precision"].get<double>(), 0.95) << evaluated.out;
 }
 
 }  // namespace

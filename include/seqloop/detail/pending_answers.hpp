@@ -55,6 +55,9 @@ class PendingAnswers {
   /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
 
+  /// The chance that the robot is carried away with a frame, beyond what is usual.
+  [[nodiscard]] double jumps() const noexcept { return jump_rate_.chance(); }
+
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
   /// @param oldest frame that belongs together with the newest: those before it wait no longer

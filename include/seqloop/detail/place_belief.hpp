@@ -43,9 +43,11 @@ class PlaceBelief {
   /// Allocates: from the arena only.
   PlaceBelief(Arena& arena, const MatcherConfig& config);
 
-  /// Takes the newest frame. @return pairs of sketches compared
+  /// Takes the newest frame. @param jumps the chance that the robot was carried away with it,
+  /// beyond what is usual: `JumpRate::chance`
+  /// @return pairs of sketches compared
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
-  std::size_t observe(const SceneView& view) noexcept;
+  std::size_t observe(const SceneView& view, double jumps = 0.0) noexcept;
 
   /// Frames went by unseen, and the robot moved on by this many rows in each.
   void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
@@ -103,6 +105,7 @@ class PlaceBelief {
     double contrast = 0.0;  // decaying mean
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
+    double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
     BeliefTraces::Index parent = BeliefTraces::none;
   };
 
@@ -123,11 +126,13 @@ class PlaceBelief {
 
   [[nodiscard]] bool has_earlier_drives(const SceneView& view) const noexcept;
   static void prefetch(const SceneView& view) noexcept;
-  void move(const PlaceOrder& order, std::span<const double> kernel) noexcept;
+  [[nodiscard]] bool goes_at_its_pace(const PlaceOrder& order, std::size_t row,
+                                      double jumps) const noexcept;
+  void move(const PlaceOrder& order, const Scene& scene, double jumps) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
   void hand_over(const PlaceMap& map) noexcept;
-  void take_on(Hypothesis& at, const Moved& moved) const noexcept;
+  void take_on(Hypothesis& at, const Moved& moved, bool drives) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene) noexcept;

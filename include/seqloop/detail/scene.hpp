@@ -37,11 +37,14 @@ struct Scene {
   double change;   ///< from the frame before, 0 .. 1
   double novelty;  ///< as much of it as leads away from what was seen, 0 .. change
 
+  /// Whether it tells more than hardly anything.
+  [[nodiscard]] bool drives() const noexcept { return novelty > least_novelty; }
+
   /// Chances that rows go on by 0, 1 or 2 with this frame: a robot that stands may as well stay.
   [[nodiscard]] std::span<const double, 3> moves() const noexcept {
     static constexpr std::array moving{0.06, 0.88, 0.06};
     static constexpr std::array standing{0.45, 0.40, 0.15};
-    return novelty > least_novelty ? moving : standing;
+    return drives() ? moving : standing;
   }
 
   /// How much more alike than rows usually are, in their deviations.
