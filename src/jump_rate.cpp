@@ -7,15 +7,20 @@ namespace seqloop {
 namespace {
 
 /// Whether a drive may lead from one row to another in so many frames: by 0 to 2 rows a frame, as
-/// the belief moves, or through other visits of the same places.
+/// the belief moves; through other visits of the same places; or, by a row a frame, beyond the end
+/// of a session and in at the beginning of one, as laps do where the map is one of them.
 bool leads_on(const PlaceMap& map, std::size_t from, std::size_t to, std::uint64_t frames) {
-  constexpr std::size_t off = 20;  // rows that either may be off, and a little more
+  constexpr std::uint64_t long_ago = 120;  // frames after which it may have come by another way
+  constexpr std::size_t off = 20;          // rows that either may be off, and a little more
+  if (frames > long_ago) return true;
   const CandidateRun before = map.order().around(from);
   const CandidateRun after = map.order().around(to);
-  const auto by = static_cast<std::size_t>(std::min<std::uint64_t>(frames, map.size()));
+  const auto by = static_cast<std::size_t>(frames);
   if (to >= before.first && to < before.last && to + off >= from && to <= from + 2 * by + off) {
     return true;
   }
+  const std::size_t around_the_end = (before.last - 1 - from) + (to - after.first);
+  if (around_the_end <= by + off) return true;
   return map.same_place(from, to) || map.same_place(std::min(from + by, before.last - 1), to) ||
          map.same_place(from, std::max(to - std::min(to, by), after.first));
 }

@@ -52,7 +52,7 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
       "answers", used ? config.patience + config.frames_at_once + 1 : config.frames_at_once);
   trace_ = arena.take<BeliefTraces::Step>("the likeliest trace", PlaceBelief::depth(config));
   carried_ = arena.take<TraceSpan::On>("frames on it, where robots are carried away",
-                                       PlaceBelief::depth(config));
+                                       grows_ ? 0 : PlaceBelief::depth(config));
 }
 
 void PendingAnswers::accept_from(float least) noexcept {
@@ -224,8 +224,11 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint6
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
     give(belief, map, waiting);
     const Answer& answer = answers_[given_ - 1];
-    if (!grows_ && answer.gate == Gate::match) jump_rate_.take(map, frame, waiting.row, oldest);
+    if (grows_ || answer.gate != Gate::match) continue;
+    jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
   }
+  // Frames from before a gap have all been answered now.
+  oldest_before_ = oldest;
   while (first_ < end_ && !at(first_).waits) ++first_;
 }
 
@@ -375,7 +378,6 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
 }
 
 void PendingAnswers::removed(std::size_t row) noexcept {
-  jump_rate_.removed(row);
   for (Waiting& waiting : waiting_) {
     if (waiting.row > row) --waiting.row;
     if (waiting.likeliest != none && waiting.likeliest > row) --waiting.likeliest;

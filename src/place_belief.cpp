@@ -260,13 +260,14 @@ void PlaceBelief::hand_over(const PlaceMap& map) noexcept {
 }
 
 /// Makes a hypothesis of what has moved.
-void PlaceBelief::take_on(Hypothesis& at, const Moved& moved, bool drives) const noexcept {
+void PlaceBelief::take_on(const PlaceOrder& order, Hypothesis& at, const Moved& moved,
+                          bool drives) const noexcept {
   if (moved.parent == BeliefTraces::none) {
     at = {};
   } else {
     at = rows_[moved.parent];
-    // More where it is handed over from another visit of the place.
-    const std::size_t by = moved.row - at.row;
+    // Far where it is handed over from another visit of the place.
+    const std::size_t by = order.apart(at.row, moved.row);
     if (drives && by <= 2) at.pace += last_move * (static_cast<double>(by) - at.pace);
   }
   at.row = moved.row;
@@ -291,7 +292,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
     Hypothesis& at = next_[i];
-    take_on(at, moved_[i], scene.drives());
+    take_on(order, at, moved_[i], scene.drives());
     const auto [l, contrast] =
         gain_of(scene, *view.map, view.rows, newest, before, at.row, sketches_);
     gains[i] = l;

@@ -6,14 +6,17 @@
 namespace seqloop {
 namespace {
 
-/// The same settings, to close loops at a cost that does not grow with the map.
-MatcherConfig to_close_loops(MatcherConfig config) {
-  config.use = Use::close_loops;
-  config.candidates = Candidates::adaptive;
-  config.relocalising = {};
-  config.full_map = FullMap::refuse;
-  config.frames_at_once = 1;
-  return config;
+/// The usual settings, which take any drive at a cost that does not grow with the map. How
+/// descriptors are compared is the map's.
+MatcherConfig to_close_loops(const MatcherConfig& config) {
+  MatcherConfig closing;
+  closing.use = Use::close_loops;
+  closing.difference = config.difference;
+  closing.arithmetic = config.arithmetic;
+  closing.standardisation = config.standardisation;
+  closing.blank_is_unreadable = config.blank_is_unreadable;
+  closing.exclude = config.exclude;
+  return closing;
 }
 
 /// A map that starts from what the other one knows of descriptors.
@@ -30,14 +33,14 @@ VisitFinder::VisitFinder(const MatcherConfig& config, const PlaceMap& map, std::
     : map_(beside(to_close_loops(config), map, places)), detector_(to_close_loops(config), map_) {}
 
 void VisitFinder::take(std::span<const float> descriptor) noexcept {
-  static_cast<void>(detector_.step(descriptor));
+  if (map_.size() < map_.capacity()) static_cast<void>(detector_.step(descriptor));
 }
 
 void VisitFinder::link(PlaceMap& map) noexcept {
   static_cast<void>(detector_.finish());
   const PlaceOrder& own = map_.order();
   const PlaceOrder& order = map.order();
-  // What could not be read is no place here: frames say which is which.
+  // Each frame is a place, as in the map's newest session.
   const auto row_of = [&](std::size_t row) { return order.row_of_frame(own.frame(row)); };
   for (std::size_t row = 0; row < map_.size(); ++row) {
     const std::optional<std::size_t> first = own.row_of_number(map_.first_visit(row));

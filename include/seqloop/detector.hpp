@@ -46,7 +46,8 @@ class Detector {
   [[nodiscard]] static Work most_work(const MatcherConfig& config, const Capacity& capacity);
 
   /// @param map lives longer than the detector. To localise: filled (and standardised, where the
-  ///   configuration standardises). To close loops: empty, or filled with earlier sessions; the
+  ///   configuration standardises), and linked by a `VisitFinder` where it holds a drive that
+  ///   passed places more than once. To close loops: empty, or filled with earlier sessions; the
   ///   drive becomes another one, to which the steps add.
   /// @param memory [bytes_needed(config, map's capacity)] aligned to Arena::alignment; empty: own
   /// Errors: SetupError, all faults at once.

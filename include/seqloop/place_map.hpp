@@ -133,7 +133,8 @@ class PlaceMap {
     return first_visits_.empty() ? order_.number(row) : first_visits_[order_.slot(row)];
   }
 
-  /// Puts back what `first_visit` gave before the map was saved.
+  /// What `first_visit` gives from here on: as it was before the map was saved, or as a
+  /// `VisitFinder` found it.
   void set_first_visit(std::size_t row, std::uint64_t number) noexcept {
     if (!first_visits_.empty()) first_visits_[order_.slot(row)] = number;
   }

@@ -75,21 +75,44 @@ TEST(JumpRate, KnowsNothingOfTheWayThroughAGap) {
   EXPECT_GT(rate.chance(), 0.0);
 }
 
-TEST(JumpRate, IsNoneBetweenVisitsOfOnePlace) {
-  PlaceMap map = map_of({100, 100});
-  for (std::size_t i = 0; i < 60; ++i) map.link(100 + i, i);
+bool is_jump(const PlaceMap& map, std::size_t from, std::size_t to, std::uint64_t frames) {
   JumpRate rate;
-  rate.take(map, 0, 30, all_belong);
-  rate.take(map, 1, 132, all_belong);   // the same place
-  rate.take(map, 2, 33, all_belong);    // and back
-  rate.take(map, 22, 153, all_belong);  // twenty frames on, in the other session
-  rate.take(map, 23, 54, all_belong);
-  EXPECT_EQ(rate.chance(), 0.0);
-  rate.take(map, 24, 190, all_belong);  // a place of the second session alone
-  EXPECT_GT(rate.chance(), 0.0);
+  rate.take(map, 0, from, all_belong);
+  rate.take(map, frames, to, all_belong);
+  return rate.chance() > 0.0;
 }
 
-TEST(JumpRate, KeepsItsRowAsOthersComeAndGo) {
+TEST(JumpRate, IsNoneBetweenVisitsOfOnePlace) {
+  // Rows 60 to 119 of the first session, and 40 to 99 of the second, 200 on.
+  PlaceMap map = map_of({200, 200});
+  for (std::size_t i = 0; i < 60; ++i) map.link(240 + i, 60 + i);
+  EXPECT_FALSE(is_jump(map, 90, 272, 1)) << "the same place";
+  EXPECT_FALSE(is_jump(map, 272, 90, 1)) << "and back";
+  EXPECT_TRUE(is_jump(map, 90, 350, 1)) << "a place of the second session alone";
+  // Only where the drive has led on to is a visit, or where it came from.
+  EXPECT_FALSE(is_jump(map, 40, 250, 30));
+  EXPECT_TRUE(is_jump(map, 40, 250, 1));
+  EXPECT_FALSE(is_jump(map, 110, 320, 30));
+  EXPECT_TRUE(is_jump(map, 110, 320, 1));
+}
+
+TEST(JumpRate, IsNoneFromTheEndOfASessionToTheBeginningOfOne) {
+  const PlaceMap map = map_of({200, 200});
+  // A lap, and a road that goes on in another session.
+  EXPECT_FALSE(is_jump(map, 195, 3, 2));
+  EXPECT_FALSE(is_jump(map, 195, 203, 2));
+  EXPECT_FALSE(is_jump(map, 180, 20, 30));
+  EXPECT_TRUE(is_jump(map, 180, 20, 5));
+  EXPECT_TRUE(is_jump(map, 195, 100, 2));
+}
+
+TEST(JumpRate, IsNoneAfterALongTime) {
+  const PlaceMap map = map_of({1000});
+  EXPECT_TRUE(is_jump(map, 500, 100, 120));
+  EXPECT_FALSE(is_jump(map, 500, 100, 121));
+}
+
+TEST(JumpRate, KeepsItsRowAsOthersCome) {
   const PlaceMap map = map_of({400});
   for (const bool told : {true, false}) {
     SCOPED_TRACE(told);
@@ -98,11 +121,6 @@ TEST(JumpRate, KeepsItsRowAsOthersComeAndGo) {
     for (std::size_t i = 0; told && i < 60; ++i) rate.inserted(i);
     rate.take(map, 1, 160, all_belong);
     EXPECT_EQ(rate.chance() == 0.0, told);
-    JumpRate back;
-    back.take(map, 0, 160, all_belong);
-    for (std::size_t i = 0; told && i < 60; ++i) back.removed(i);
-    back.take(map, 1, 100, all_belong);
-    EXPECT_EQ(back.chance() == 0.0, told);
   }
 }
 

@@ -64,7 +64,7 @@ std::size_t accepted(const Said& said) {
   return static_cast<std::size_t>(std::ranges::count(said.answers, Gate::match, &Answer::gate));
 }
 
-/// Every so manieth frame of a way.
+/// Every n-th frame of a way, n being `by`.
 oracle::Vectors thinned(const oracle::Vectors& way, double by) {
   oracle::Vectors some;
   for (double i = 0.0; i < static_cast<double>(way.size()); i += by) {

@@ -34,7 +34,7 @@ class Accuracy : public test::Program {
     return measures["recall_at_100_precision"].get<double>();
   }
 
-  /// Pictures of a drive from one on, every so manieth, as a folder NAME and descriptors NAME.npy.
+  /// Every n-th picture of a part of a drive, as a folder NAME and descriptors NAME.npy.
   void describe_some(const std::filesystem::path& drive, std::size_t first, std::size_t last,
                      std::size_t every, const std::string& name) {
     std::vector<std::filesystem::path> pictures;

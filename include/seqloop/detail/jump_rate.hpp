@@ -11,6 +11,7 @@ namespace seqloop {
 
 /// How often a robot is carried away while it localises: by the accepted answers that no drive
 /// leads on to from those before them. One that never was is trusted as if it never will be.
+/// Rows do not go from a map that is localised in.
 /// Source: src/README.md, section 6.6.
 class JumpRate {
  public:
@@ -25,11 +26,6 @@ class JumpRate {
   /// eight times as often as it was seen to be. Windows overlap, so that frames on either side of a
   /// jump say more for one trace than they know.
   [[nodiscard]] double chance() const noexcept;
-
-  /// A row went from the map: those behind it are counted one lower.
-  void removed(std::size_t row) noexcept {
-    if (last_ && last_->row > row) --last_->row;
-  }
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept {

@@ -158,6 +158,7 @@ class PendingAnswers {
   std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
   JumpRate jump_rate_;
+  std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago
 };
 
 }  // namespace seqloop

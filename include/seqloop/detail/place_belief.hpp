@@ -132,7 +132,8 @@ class PlaceBelief {
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
   void hand_over(const PlaceMap& map) noexcept;
-  void take_on(Hypothesis& at, const Moved& moved, bool drives) const noexcept;
+  void take_on(const PlaceOrder& order, Hypothesis& at, const Moved& moved,
+               bool drives) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene) noexcept;

@@ -43,7 +43,10 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   std::size_t blank_frames = 0;
   std::optional<VisitFinder> visits;
   if (VisitFinder::is_needed(config)) {
-    visits.emplace(config, map, std::min(map.capacity(), most_looked_through));
+    const std::uint64_t frames = drive.frame_count().value_or(map.capacity());
+    visits.emplace(
+        config, map,
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(frames, 1, most_looked_through)));
   }
   Frame frame;
   for (Grab grab = drive.grab(frame); grab != Grab::end; grab = drive.grab(frame)) {
@@ -87,8 +90,9 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   if (visits && places > most_looked_through) {
     progress.tell(fmt::format(
         "places after the first {} of the reference are not looked through for other visits of one "
-        "place: if it has any, make a map of it once with 'seqloop run --source REFERENCE --map "
-        "FILE', and localise in that",
+        "place: if it has any, localise in a map that was made of it once, by 'seqloop run "
+        "--source "
+        "REFERENCE --map FILE'",
         most_looked_through));
   }
   return blank_frames;

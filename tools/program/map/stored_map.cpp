@@ -74,8 +74,7 @@ StoredMap::StoredMap(const MapSettings& settings, const MatcherConfig& config,
 }
 
 Capacity StoredMap::capacity(std::size_t drive) const noexcept {
-  // A drive that closed loops has visits, which a map with room for one session that does not
-  // change would not take: so there is room for another, also where nothing is added.
+  // One session more: the drive's. It is some bytes where nothing is added.
   return {std::max<std::size_t>(places_ + (read_only_ ? 0 : drive), 1), descriptor_size_,
           names_.size() + 1};
 }

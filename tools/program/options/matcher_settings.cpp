@@ -121,7 +121,8 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
   options.add({"exclude", ValueKind::count,
-               "closing loops: newest frames that are no places [60; 100 by uniqueness]",
+               "closing loops, a reference's too: newest frames that are no places [60; 100 by "
+               "uniqueness]",
                [&settings](std::string_view value) { settings.exclude = parse_count(value); }});
   options.add({"full-map", ValueKind::text,
                "closing loops, what a full map does: refuse new places, forget-oldest, or thin out "
