@@ -91,8 +91,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
     progress.tell(fmt::format(
         "places after the first {} of the reference are not looked through for other visits of one "
         "place: if it has any, localise in a map that was made of it once, by 'seqloop run "
-        "--source "
-        "REFERENCE --map FILE'",
+        "--source REFERENCE --map FILE'",
         most_looked_through));
   }
   return blank_frames;
