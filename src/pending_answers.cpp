@@ -74,12 +74,7 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
 
 /// That the robot was at the frame's row when it took it.
 double PendingAnswers::probability(const Waiting& waiting) noexcept {
-  return waiting.right * (waiting.left ? waiting.on.left : waiting.on.still);
-}
-
-/// The same, if it is carried away as often as it has been.
-double PendingAnswers::probability_if_carried(const Waiting& waiting) noexcept {
-  return waiting.right * (waiting.left ? waiting.carried.left : waiting.carried.still);
+  return waiting.right * waiting.on.where(waiting.left);
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -261,7 +256,8 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   const double is_there = probability(waiting);
   if (is_there <= most_in_doubt) return is_there;
   if (meets_another(map, waiting)) return most_in_doubt;
-  return std::min(is_there, std::max(most_in_doubt, probability_if_carried(waiting)));
+  const double if_carried = waiting.right * waiting.carried.where(waiting.left);
+  return std::min(is_there, std::max(most_in_doubt, if_carried));
 }
 
 void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept {

@@ -123,7 +123,6 @@ class PendingAnswers {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
-  [[nodiscard]] static double probability_if_carried(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool meets_another(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;

@@ -21,6 +21,7 @@ class TraceSpan {
   struct On {
     double still;  ///< if the trace goes on
     double left;   ///< if it was left, since the newest frame at the latest
+    [[nodiscard]] double where(bool was_left) const noexcept { return was_left ? left : still; }
   };
 
   /// Takes what frames gain elsewhere from what they gain on a trace.

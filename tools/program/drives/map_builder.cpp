@@ -74,7 +74,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
                                     map.capacity()),
                         "raise --max-places"});
     }
-    if (visits && places <= most_looked_through) visits->take(last);
+    if (visits) visits->take(last);
     if (learns) {
       learnt.push_back(last);
     } else {
