@@ -10,6 +10,7 @@
 #include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/detail/lowest_lines.hpp"
 #include "seqloop/detail/portable_math.hpp"
+#include "seqloop/detail/sketch.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -40,6 +41,47 @@ std::size_t queries_kept(const MatcherConfig& config) {
   return (kept + at_once - 1 + at_once - 1) / at_once * at_once;
 }
 
+/// How unlike neighbours among the places of a map usually are: 1 is as unlike as two that have
+/// nothing to do with each other. None where there are too few of them to tell.
+std::optional<double> spacing_of(const PlaceMap& map) {
+  constexpr std::size_t least = 20;
+  constexpr std::size_t most = 255;
+  const PlaceOrder& order = map.order();
+  if (order.size() < least) return std::nullopt;
+  std::array<double, most> found;
+  const std::size_t pairs = std::min(most, order.size() - 1);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    const std::size_t row = i * (order.size() - 1) / pairs;
+    if (order.apart(row, row + 1) != 1) continue;
+    const double d = chord(
+        map.rows().look_closely(map.rows().close_sketch(order.slot(row)), order.slot(row + 1)) /
+        DescriptorRows::close_bits);
+    found[count++] = d * d / 2.0;
+  }
+  if (count < least / 2) return std::nullopt;
+  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(found.begin(), middle, found.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
+/// Steps whose frames are asked for: those that wait, and the newest that are no candidates yet.
+std::size_t steps_kept(const MatcherConfig& config) {
+  return std::max(config.patience, config.exclude) + 2 * config.sequence_length +
+         config.frames_at_once + 2;
+}
+
+/// Frames whose steps are asked for: those that wait, and as many as may be skipped at once.
+std::size_t frames_kept(const MatcherConfig& config) {
+  return config.patience + Keyframes::most_apart * (config.sequence_length + 1) +
+         config.frames_at_once + 2;
+}
+
+/// Answers that may become due at once.
+std::size_t answers_kept(const MatcherConfig& config) {
+  return config.patience + 2 * config.frames_at_once + 1;
+}
+
 /// Whether a descriptor is what its difference wants: finite, and for Euclid of unit length
 /// (Algorithm 1) or all zero. One that is not would spoil the running statistics for the rest of
 /// the drive.
@@ -61,6 +103,9 @@ Detector::Detector(const MatcherConfig& config, PlaceMap& map, ArenaMemory&& mem
     : Detector(Arena(memory.span()), config, &map, capacity_of(map), std::move(memory)) {
   statistics_.start_from(map.statistics(), config.standardisation.prior_frames);
   if (config.use == Use::close_loops) static_cast<void>(map.begin_session());
+  if (has_keyframes(config)) {
+    if (const std::optional<double> spacing = spacing_of(map)) keyframes_.go_by(*spacing);
+  }
 }
 
 Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
@@ -79,21 +124,76 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       decision_(arena, config),
       belief_(arena, config),
       pending_(arena, config, trajectories_),
+      keyframes_(arena, has_keyframes(config) ? capacity.descriptor_size : 0),
+      steps_(arena, has_keyframes(config) ? steps_kept(config) : 0,
+             has_keyframes(config) ? frames_kept(config) : 0),
+      told_(arena.take<Answer>("answers to frames",
+                               has_keyframes(config) ? answers_kept(config) : 0)),
       standardised_(arena.take<float>("the newest descriptor", capacity.descriptor_size)) {}
 
 FrameReport Detector::step(std::span<const float> descriptor) noexcept {
   pending_.clear();
+  told_count_ = 0;
   return take(descriptor);
 }
 
 /// A step whose answers stand beside those of the steps before it.
 FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   const std::uint64_t newest = queries_.frames();
-  const bool readable = take_query(descriptor);
+  const auto [readable, is_step] = take_query(descriptor);
+  if (!is_step) return report_again();
   const bool became_place = config_.use == Use::localise || become_place();
   FrameReport report = answer(newest, readable);
   report.map_full = !became_place;
+  if (told_.empty()) return report;
+  its_answer_.reset();
+  last_ = report;
+  tell(report, report.answers);
   return report;
+}
+
+/// Of a frame that shows what the newest step does.
+FrameReport Detector::report_again() noexcept {
+  const std::size_t before = pending_.answers().size();
+  pending_.answer(belief_, *map_, steps_, steps_.frames() - 1, window_began_);
+  FrameReport report = last_;
+  report.work = {};
+  report.full_search = false;
+  report.frame.reset();
+  report.match.reset();
+  const bool whole = queries_.newest() >= window_began_ + config_.sequence_length;
+  report.gate = whole ? Gate::waiting : Gate::warming_up;
+  const bool told_before = its_answer_.has_value();
+  const std::size_t first = told_count_;
+  tell(report, pending_.answers().subspan(before));
+  if (told_before) {
+    tell(*its_answer_, report.newest);
+    report.answers = told_.subspan(first, told_count_ - first);
+  }
+  if (!report.answers.empty()) {
+    report.frame = report.answers.back().frame;
+    report.gate = report.answers.back().gate;
+    report.match = report.answers.back().match;
+  }
+  return report;
+}
+
+/// Answers a frame as its step was.
+void Detector::tell(const Answer& answer, std::uint64_t frame) noexcept {
+  told_[told_count_] = answer;
+  told_[told_count_++].frame = frame;
+}
+
+/// Puts frames into a report for steps. @param answers to steps
+void Detector::tell(FrameReport& report, std::span<const Answer> answers) noexcept {
+  const std::size_t first = told_count_;
+  for (const Answer& answer : answers) {
+    steps_.frames_of(answer.frame, [&](std::uint64_t frame) { tell(answer, frame); });
+    if (answer.frame == queries_.newest()) its_answer_ = answer;
+  }
+  report.newest = steps_.frames() - 1;
+  report.answers = told_.subspan(first, told_count_ - first);
+  if (!report.answers.empty()) report.frame = report.answers.back().frame;
 }
 
 std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
@@ -105,13 +205,14 @@ std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
                        !config_.enhance && in_blocks;
   const std::size_t count = std::min({descriptors.size(), reports.size(), config_.frames_at_once});
   pending_.clear();
+  told_count_ = 0;
   if (!at_once) {
     for (std::size_t i = 0; i < count; ++i) reports[i] = take(descriptors[i]);
     return count;
   }
   const std::uint64_t first = queries_.frames();
   std::array<bool, MatcherConfig::most_frames_at_once> readable;
-  for (std::size_t i = 0; i < count; ++i) readable[i] = take_query(descriptors[i]);
+  for (std::size_t i = 0; i < count; ++i) readable[i] = take_query(descriptors[i]).readable;
   slices_.fill_newest(*map_, count);
   for (std::size_t i = 0; i < count; ++i) {
     reports[i] = answer(first + i, readable[i]);
@@ -144,7 +245,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   if (readable) {
     report.work.sketches += pending_.believe(belief_, *map_, report.newest, window_began_);
   }
-  pending_.answer(belief_, *map_, report.newest, window_began_);
+  pending_.answer(belief_, *map_, steps_, steps_.frame_of(report.newest), window_began_);
   const std::span<const Answer> answers = pending_.answers().subspan(before);
   const bool whole = report.newest >= window_began_ + config_.sequence_length;
   report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
@@ -164,11 +265,15 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
 
 std::span<const Answer> Detector::finish() noexcept {
   pending_.clear();
+  told_count_ = 0;
   const std::uint64_t end = queries_.frames();
   if (end > 0 && config_.decision == Decision::probability)
-    pending_.answer(belief_, *map_, end - 1, end);
+    pending_.answer(belief_, *map_, steps_, steps_.frames() - 1, end);
   restart();
-  return pending_.answers();
+  if (told_.empty() || end == 0) return pending_.answers();
+  FrameReport report;
+  tell(report, pending_.answers());
+  return report.answers;
 }
 
 /// Matches the centre frame of a window whose newest frame has been taken.
@@ -230,24 +335,30 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
 
 void Detector::skip(std::uint64_t frames) noexcept {
   if (frames == 0 || queries_.frames() == 0) return;
-  if (frames > config_.sequence_length) {
+  const std::uint64_t steps = told_.empty() ? frames : keyframes_.in(frames);
+  if (steps > config_.sequence_length) {
     restart();
     return;
   }
-  for (std::uint64_t frame = 0; frame < frames; ++frame) {
+  keyframes_.skip(frames);
+  steps_.skip(frames, steps);
+  if (steps == 0) return;
+  for (std::uint64_t step = 0; step < steps; ++step) {
     queries_.push_again();
     slices_.repeat();
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
-  ranges_.skip(map_->order(), frames);
-  proposals_.skip(map_->order(), frames);
-  decision_.skip(frames);
-  if (config_.decision == Decision::probability) belief_.pass(map_->order(), frames, 1);
+  newest_was_seen_ = false;
+  ranges_.skip(map_->order(), steps);
+  proposals_.skip(map_->order(), steps);
+  decision_.skip(steps);
+  if (config_.decision == Decision::probability) belief_.pass(map_->order(), steps, 1);
   change_degree_ = {};
 }
 
 void Detector::restart() noexcept {
   window_began_ = queries_.frames();
+  newest_was_seen_ = false;
   ranges_.restart();
   proposals_.restart();
   decision_.restart();
@@ -257,27 +368,44 @@ void Detector::restart() noexcept {
 
 /// Takes the newest frame's descriptor: standardised by what the drive has shown so far, or that of
 /// the frame before when there is nothing to take.
-bool Detector::take_query(std::span<const float> descriptor) noexcept {
+Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
+    keyframes_.skip(1);
+    steps_.take();
+    newest_was_seen_ = false;
     queries_.push_again();
-    return false;
+    return {false, true};
   }
   if (!config_.standardisation.on) {
+    steps_.take();
     queries_.push(descriptor);
-    return true;
+    return {true, true};
   }
   statistics_.follow(descriptor, config_.standardisation);
+  const bool is_keyframe = told_.empty() || keyframes_.take(descriptor, statistics_.variance_sum());
+  if (!is_keyframe && newest_was_seen_) {
+    steps_.repeat();
+    return {true, false};
+  }
+  steps_.take();
+  newest_was_seen_ = true;
   statistics_.standardise(descriptor, standardised_);
   queries_.push(standardised_);
-  return true;
+  return {true, true};
 }
 
 /// Closing loops: the newest frame becomes a place, if the map has room or makes some.
 bool Detector::become_place() noexcept {
   // Places that the newest frames still need as they were: those that are no candidates yet.
   const std::size_t keep = std::max(keep_.value_or(0), config_.exclude + config_.sequence_length);
+  const std::uint64_t frame = steps_.frame_of(queries_.newest());
+  // The numbers of frames that are no keyframes are left out.
+  if (queries_.newest() > 0) {
+    const std::uint64_t apart = frame - steps_.frame_of(queries_.newest() - 1);
+    map_->count_from(map_->order().next_number() + apart - 1);
+  }
   const PlaceMap::Taken taken =
-      map_->take(queries_.rows(), queries_.row_of(queries_.newest()), queries_.newest(), keep);
+      map_->take(queries_.rows(), queries_.row_of(queries_.newest()), frame, keep);
   // Several frames may come before who needs the newest places hears of them.
   if (taken.slot && keep_) ++*keep_;
   if (taken.removed) {
@@ -308,7 +436,7 @@ bool Detector::take_in(std::size_t session, const PlaceMap::Saved& place) noexce
 std::size_t Detector::rows_searched(std::uint64_t centre) const noexcept {
   const CandidateRun drive = running(config_, map_->order());
   if (centre <= config_.exclude || drive.first == drive.last) return drive.first;
-  return map_->order().row_of_frame(centre - config_.exclude);
+  return map_->order().row_of_frame(steps_.frame_of(centre - config_.exclude));
 }
 
 /// Rows whose neighbourhood is all there, so that what is enhanced by it stays right.

@@ -67,6 +67,11 @@ bool relocalises(const MatcherConfig& config) noexcept {
   return config.relocalising.on && config.candidates != Candidates::all;
 }
 
+bool has_keyframes(const MatcherConfig& config) noexcept {
+  return config.keyframes && relocalises(config) && config.decision == Decision::probability &&
+         config.standardisation.on;
+}
+
 bool scans(const MatcherConfig& config) noexcept {
   return relocalises(config) || config.decision == Decision::probability;
 }

@@ -210,14 +210,14 @@ void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
   }
 }
 
-void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
-                            std::uint64_t oldest) noexcept {
+void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
+                            std::uint64_t newest, std::uint64_t oldest) noexcept {
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
-    const bool late = frame < oldest || newest - frame >= patience_;
+    const bool late = frame < oldest || newest - steps.frame_of(frame) >= patience_;
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
-    give(belief, map, waiting);
+    give(belief, map, steps, waiting);
     const Answer& answer = answers_[given_ - 1];
     if (grows_ || answer.gate != Gate::match) continue;
     jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
@@ -260,7 +260,8 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   return std::min(is_there, std::max(most_in_doubt, if_carried));
 }
 
-void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept {
+void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
+                          Waiting& waiting) noexcept {
   waiting.waits = false;
   Answer& answer = answers_[given_++];
   answer = {waiting.frame, Gate::frame_error, 0.0F, std::nullopt};
@@ -276,8 +277,9 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, Waiting& wai
   // The frame is a place too, unless the map was full.
   constexpr auto likely = static_cast<float>(PlaceMap::likely);
   if (!grows_ || answer.probability < likely || waiting.row >= map.size()) return;
-  const std::size_t row = map.order().row_of_frame(waiting.frame);
-  if (row < map.size() && map.order().frame(row) == waiting.frame) map.link(row, waiting.row);
+  const std::uint64_t frame = steps.frame_of(waiting.frame);
+  const std::size_t row = map.order().row_of_frame(frame);
+  if (row < map.size() && map.order().frame(row) == frame) map.link(row, waiting.row);
 }
 
 std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,

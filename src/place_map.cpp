@@ -48,6 +48,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
       added_(arena, learns(config, capacity) ? capacity.descriptor_size : 0,
              {"mean of what is added", "variance of what is added", "deviation of what is added",
               "last place that moved them"}),
+      has_keyframes_(has_keyframes(config)),
+      keyframes_(arena, learns(config, capacity) && has_keyframes_ ? capacity.descriptor_size : 0),
       order_(arena, capacity.places, capacity.sessions),
       rows_(arena, {"places", "lengths of places", "sketches of places"},
             DescriptorForm(config, capacity.descriptor_size), capacity.places),
@@ -81,13 +83,24 @@ bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
 bool PlaceMap::add(std::span<const float> descriptor) noexcept {
   if (size() == capacity() || !fits(descriptor)) return false;
   const std::size_t first = order_.session(order_.sessions() - 1).first;
+  std::uint64_t frame = first == size() ? 0 : order_.frame(size() - 1) + 1;
   if (!standardised_.empty()) {
-    if (first == size()) added_.start_from(statistics_, standardisation_.prior_frames);
+    if (first == size()) {
+      added_.start_from(statistics_, standardisation_.prior_frames);
+      keyframes_.begin();
+      no_places_ = 0;
+    }
     added_.follow(descriptor, standardisation_);
+    if (has_keyframes_ && !keyframes_.take(descriptor, added_.variance_sum()) && first != size()) {
+      ++no_places_;
+      return true;
+    }
+    frame += std::exchange(no_places_, 0);
     added_.standardise(descriptor, standardised_);
     descriptor = standardised_;
   }
-  const std::uint64_t frame = first == size() ? 0 : order_.frame(size() - 1) + 1;
+  const std::uint64_t before = first == size() ? order_.next_number() : order_.number(size() - 1);
+  order_.count_from(first == size() ? before : before + (frame - order_.frame(size() - 1)));
   rows_.store(append(frame, order_.next_number()), descriptor);
   space(size() - 1);
   return true;

@@ -14,6 +14,7 @@ MatcherConfig to_close_loops(const MatcherConfig& config) {
   closing.difference = config.difference;
   closing.arithmetic = config.arithmetic;
   closing.standardisation = config.standardisation;
+  closing.keyframes = has_keyframes(config);
   closing.blank_is_unreadable = config.blank_is_unreadable;
   closing.exclude = config.exclude;
   return closing;

@@ -54,11 +54,12 @@ class Maker:
     def real(self, source: str) -> np.ndarray:
         return self.read(source, source.replace("/", "-"))
 
-    def street(self, use: str, frames: int, seed: int) -> tuple[list[np.ndarray], pathlib.Path]:
+    def street(self, use: str, frames: int, seed: int,
+               metres: float) -> tuple[list[np.ndarray], pathlib.Path]:
         """Descriptors of the drives of a synthetic street, and their truth. With what is near by
         another road where the drive closes loops."""
         parts = ["reference", "query"] if use == "localise" else ["drive"]
-        name = f"street-{use}-{seed}"
+        name = f"street-{use}-{seed}" + (f"-{metres}" if metres != 1.0 else "")
         files = [self.out / f"{name}-{part}.npy" for part in parts]
         folder, truth = self.out / f"{name}.pictures", self.out / f"{name}-truth.csv"
         kept = {"truth.csv": truth}
@@ -68,7 +69,7 @@ class Maker:
             say(f"{name}: drawing")
             jumps = ["--kidnaps", seed % 3] if use == "loop" else []
             call([self.tools.street, "--keep", "--quiet", "--drives", use, "--frames", frames,
-                  "--seed", seed, "--out", folder, *jumps])
+                  "--length", frames * metres, "--seed", seed, "--out", folder, *jumps])
         drives = [self.read(str(folder / part), file.stem) for part, file in zip(parts, files)]
         if folder.exists():
             for drawn, file in kept.items():
@@ -108,6 +109,29 @@ def at_pace(query: str, reference: str, pace: float):
         places = (np.arange(int(len(known) * pace)) / pace).astype(int)
         truth = {i: [int(np.abs(places - i).argmin())] for i in range(len(rows))}
         return rows, known[places], truth
+    return make
+
+
+def with_stops(query: str, reference: str, every: int, stop: int, whose: str):
+    """Localising where a robot stands so long each so many frames: now, then, or both times, but at
+    other places. Drives that stand nowhere of their own."""
+    def stopped(rows: np.ndarray, first: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        frames = np.arange(len(rows))
+        stands = (frames >= first) & ((frames - first) % every == 0)
+        frames = np.repeat(frames, np.where(stands, stop + 1, 1))
+        again = np.append(False, frames[1:] == frames[:-1])[:, None]
+        noise = np.random.default_rng(seed).normal(0.0, 0.003, (len(frames), rows.shape[1]))
+        noisy = rows[frames] + np.where(again, noise, 0.0)
+        return noisy / np.linalg.norm(noisy, axis=1, keepdims=True), frames
+
+    def make(maker: Maker):
+        rows, known = maker.real(query), maker.real(reference)
+        seen, frames = stopped(rows, every, 5) if whose != "then" else (rows, np.arange(len(rows)))
+        places, of = (stopped(known, every + every // 2, 6) if whose != "now"
+                      else (known, np.arange(len(known))))
+        truth = {i: [int(place) for place in np.flatnonzero(of == frame)]
+                 for i, frame in enumerate(frames)}
+        return seen, places, truth
     return make
 
 
@@ -166,10 +190,11 @@ def teleports(query: str, reference: str, pieces: int, shortest: int, longest: i
     return make
 
 
-def street(seed: int, use: str, alone: int | None = None):
-    """@param alone which of the two drives is matched with itself"""
+def street(seed: int, use: str, alone: int | None = None, metres: float = 1.0):
+    """@param alone which of the two drives is matched with itself   @param metres a frame"""
     def make(maker: Maker):
-        drives, truth = maker.street(use, 600 if use == "localise" else 1200, seed)
+        frames = int((600 if use == "localise" else 1200) / metres)
+        drives, truth = maker.street(use, frames, seed, metres)
         if alone is not None:
             return drives[alone], None, same_frames(0, len(drives[alone]))
         known = drives[0] if use == "localise" else None
@@ -201,6 +226,13 @@ def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
     for name, query, reference in (("gardens", night, day), ("nordland", winter, summer)):
         drives += [Drive(f"pace-{name}-{pace}", at_pace(query, reference, pace), (10, 5),
                          (query, reference)) for pace in (0.5, 0.67, 1.5)]
+    for query, reference in ((night, day), (day, night)):
+        drives += [Drive(f"stops-{query.split('/')[-1]}-{whose}",
+                         with_stops(query, reference, 60, 100, whose), (10, 2), (query, reference))
+                   for whose in ("now", "then", "both")]
+    drives += [Drive(f"slow-street-{seed}-{metres}", street(seed, "localise", metres=metres),
+                     (int(10 / metres), int(3 / metres)))
+               for seed in seeds[:4] for metres in (0.5, 0.25)]
     drives += [Drive(f"new-{source.split('/')[-1]}", nothing_twice(source), (10, 2), (source,))
                for source in (*GARDENS, *NORDLAND)]
     for seed in seeds:

@@ -13,6 +13,8 @@
 #include "seqloop/detail/candidate_ranges.hpp"
 #include "seqloop/detail/change_degree.hpp"
 #include "seqloop/detail/difference_slices.hpp"
+#include "seqloop/detail/frame_steps.hpp"
+#include "seqloop/detail/keyframes.hpp"
 #include "seqloop/detail/loop_decision.hpp"
 #include "seqloop/detail/pending_answers.hpp"
 #include "seqloop/detail/place_belief.hpp"
@@ -66,7 +68,9 @@ class Detector {
   ///   empty, of another size, neither of these, or blank where `blank_is_unreadable`, the frame
   ///   could not be read: it counts as one at which the scene stood still, and its answer is
   ///   `frame_error`; by uniqueness, that of the centre frame is.
-  /// Work: at most `most_work`. Allocates: never.
+  /// Where sequences are made of keyframes (`has_keyframes`), a frame that is none becomes no
+  /// place, moves nothing, and is answered as the keyframe before it. Work: at most `most_work`.
+  /// Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
   /// Takes several frames of a recording: the same answers as by as many steps. Localising, where
@@ -81,11 +85,11 @@ class Detector {
                                   std::span<FrameReport> reports) noexcept;
 
   /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds
-  /// of them are frames at which the scene stood still, so that trajectories keep their velocities;
-  /// closing loops, they become places. After more, what was seen before says nothing of now: none
-  /// of them is counted, and the window begins anew (`warming_up`).
-  /// Work: N + D copies a frame at most; no distances, no line-sums. Allocates: never.
-  /// Source: src/README.md, section 5.7.
+  /// of them (of the keyframes that they would be, in a dense drive) are frames at which the scene
+  /// stood still, so that trajectories keep their velocities; closing loops, they become places.
+  /// After more, what was seen before says nothing of now: none of them is counted, and the window
+  /// begins anew (`warming_up`). Work: N + D copies a frame at most; no distances, no line-sums.
+  /// Allocates: never. Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.
@@ -140,7 +144,15 @@ class Detector {
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
   [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
   void report_due(FrameReport& report, bool readable) noexcept;
-  [[nodiscard]] bool take_query(std::span<const float> descriptor) noexcept;
+  /// What became of a frame.
+  struct Taken {
+    bool readable;
+    bool step;  ///< or it is the newest one
+  };
+  [[nodiscard]] Taken take_query(std::span<const float> descriptor) noexcept;
+  [[nodiscard]] FrameReport report_again() noexcept;
+  void tell(const Answer& answer, std::uint64_t frame) noexcept;
+  void tell(FrameReport& report, std::span<const Answer> answers) noexcept;
   [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
@@ -166,6 +178,13 @@ class Detector {
   LoopDecision decision_;
   PlaceBelief belief_;
   PendingAnswers pending_;
+  Keyframes keyframes_;
+  FrameSteps steps_;
+  bool newest_was_seen_ = false;      // the newest step is a frame that could be read
+  FrameReport last_;                  // of that step
+  std::optional<Answer> its_answer_;  // of that step, once it has been given
+  std::span<Answer> told_;            // of frames, where not each is a step
+  std::size_t told_count_ = 0;
   std::span<float> standardised_;  // [D]
 };
 

@@ -110,6 +110,9 @@ struct MatcherConfig {
   /// A blank descriptor (`blank()`: a covered lens, a black tunnel) counts as a frame that could
   /// not be read. Otherwise all such frames look alike, and match each other with top certainty.
   bool blank_is_unreadable = true;
+  /// Make sequences of keyframes where it relocalises, standardises and decides by probability
+  /// (src/README.md, section 5.11). Off: of all frames.
+  bool keyframes = true;
   Decision decision = Decision::probability;
   float min_probability = 0.99F;  ///< a match must be at least this probable; above 0 .. 1
   /// Frames that come after a frame before its answer is due at the latest; 0 .. 1,000. Each keeps
@@ -134,6 +137,9 @@ struct Capacity {
 /// Whether places have sketches by which each frame looks at part of the map: to relocalise, or
 /// to decide by probability.
 [[nodiscard]] bool scans(const MatcherConfig& config) noexcept;
+
+/// Whether sequences are made of keyframes, in place of all frames.
+[[nodiscard]] bool has_keyframes(const MatcherConfig& config) noexcept;
 
 /// The most descriptor distances that the candidates of one frame may cost where the detector
 /// relocalises: seven times what keeping up with one range takes, or 256 if that is more, unless

@@ -9,6 +9,7 @@
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/descriptor_rows.hpp"
+#include "seqloop/detail/keyframes.hpp"
 #include "seqloop/detail/place_order.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -54,7 +55,8 @@ class PlaceMap {
   [[nodiscard]] bool learn(std::span<const float> descriptor) noexcept;
 
   /// Appends a place; standardised, if that is on, as a drive's frames are: by what the session has
-  /// shown so far.
+  /// shown so far. Where sequences are made of keyframes (`has_keyframes`), others take no room:
+  /// the numbers of those that follow leave theirs out.
   /// @param descriptor [D]; without NaN or infinity
   /// @return false when the map is full, or the descriptor is of another size or not finite: then
   ///   nothing has changed
@@ -189,6 +191,9 @@ class PlaceMap {
   bool learning_ = false;  // the newest session, which has no place yet
   RunningStatistics statistics_;
   RunningStatistics added_;  // of the places that are added, as a drive's
+  bool has_keyframes_;
+  Keyframes keyframes_;          // of what is added
+  std::uint64_t no_places_ = 0;  // frames since the last of these
   PlaceOrder order_;
   DescriptorRows rows_;
   std::span<float> standardised_;         // [D]

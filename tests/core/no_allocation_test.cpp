@@ -40,6 +40,20 @@ std::size_t matches(const FrameReport& report) {
       report.answers, [](const Answer& answer) { return answer.match.has_value(); }));
 }
 
+TEST_F(NoAllocation, WhereNotEachFrameIsAKeyframe) {
+  const oracle::Vectors slow = test::slowly(test::way(1, 200, 0.3F, 1), 6, 1);
+  const MatcherConfig config;
+  PlaceMap map = map_of(slow, config);
+  Detector detector(config, map);
+  const AllocationGuard guard;
+  std::size_t answers = 0;
+  for (const auto& descriptor : slow) answers += detector.step(descriptor).answers.size();
+  answers += detector.finish().size();
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_EQ(answers, slow.size());
+  EXPECT_LT(map.size(), slow.size() / 2);
+}
+
 TEST_F(NoAllocation, WherePlacesOfOthersAreTakenIn) {
   const oracle::Vectors one = oracle::drive(32, 150, 40, 0.2F);
   const oracle::Vectors other = oracle::drive(33, 150, 40, 0.2F);

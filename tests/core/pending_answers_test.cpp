@@ -41,7 +41,7 @@ struct Passing {
       pending.found(centre, std::span(&line, 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
-    pending.answer(belief, seen.map, view.newest, 0);
+    pending.answer(belief, seen.map, steps, view.newest, 0);
     return pending.answers();
   }
 
@@ -49,6 +49,7 @@ struct Passing {
   Seen seen{test::way(1, 200, 0.3F, 1), config};
   Trajectories lines{seen.memory.arena, config.sequence_length, config.vmin, config.vmax};
   PlaceBelief belief{seen.memory.arena, config};
+  FrameSteps steps{seen.memory.arena, 0, 0};  // each frame is one
   PendingAnswers pending{seen.memory.arena, config, lines};
 };
 
@@ -62,7 +63,8 @@ std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
   };
   for (const auto& descriptor : query) take(passing.step(descriptor, rows));
   passing.pending.clear();
-  passing.pending.answer(passing.belief, passing.seen.map, query.size() - 1, query.size());
+  passing.pending.answer(passing.belief, passing.seen.map, passing.steps, query.size() - 1,
+                         query.size());
   take(passing.pending.answers());
   return answers;
 }

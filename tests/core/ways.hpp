@@ -41,4 +41,23 @@ inline oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, 
   return unit(drive);
 }
 
+/// So many frames for each of a drive, on the way from it to the next, and a little noise.
+inline oracle::Vectors slowly(const oracle::Vectors& drive, std::size_t frames,
+                              std::uint32_t seed) {
+  std::mt19937 random(seed);
+  oracle::Vectors slow;
+  for (std::size_t at = 0; at + 1 < drive.size(); ++at) {
+    for (std::size_t i = 0; i < frames; ++i) {
+      const float share = static_cast<float>(i) / static_cast<float>(frames);
+      std::vector<float> seen(drive[at].size());
+      for (std::size_t d = 0; d < seen.size(); ++d) {
+        const float noise = static_cast<float>(random()) / 4294967296.0F - 0.5F;
+        seen[d] = (1.0F - share) * drive[at][d] + share * drive[at + 1][d] + 0.005F * noise;
+      }
+      slow.push_back(seen);
+    }
+  }
+  return unit(slow);
+}
+
 }  // namespace seqloop::test

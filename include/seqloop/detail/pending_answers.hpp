@@ -7,6 +7,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/frame_steps.hpp"
 #include "seqloop/detail/jump_rate.hpp"
 #include "seqloop/detail/place_belief.hpp"
 #include "seqloop/detail/trace_span.hpp"
@@ -61,8 +62,8 @@ class PendingAnswers {
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
   /// @param oldest frame that belongs together with the newest: those before it wait no longer
-  void answer(const PlaceBelief& belief, PlaceMap& map, std::uint64_t newest,
-              std::uint64_t oldest) noexcept;
+  void answer(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
+              std::uint64_t newest, std::uint64_t oldest) noexcept;
 
   /// Takes an answer that did not wait.
   void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
@@ -138,7 +139,8 @@ class PendingAnswers {
   [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
   [[nodiscard]] Match match(const PlaceBelief& belief, const PlaceMap& map,
                             std::uint64_t frame) noexcept;
-  void give(const PlaceBelief& belief, PlaceMap& map, Waiting& waiting) noexcept;
+  void give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
+            Waiting& waiting) noexcept;
 
   const Trajectories* trajectories_;
   std::size_t patience_;

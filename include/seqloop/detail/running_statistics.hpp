@@ -59,6 +59,10 @@ class RunningStatistics {
   /// float. Work: 4 D. Allocates: never.
   bool standardise(std::span<const float> descriptor, std::span<float> out) const noexcept;
 
+  /// Of all features. Two frames that have nothing to do with each other are on average twice as
+  /// far apart, squared.
+  [[nodiscard]] double variance_sum() const noexcept { return variances_; }
+
   [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
   [[nodiscard]] std::span<const double> mean() const noexcept { return mean_; }
   [[nodiscard]] std::span<const double> variance() const noexcept { return variance_; }

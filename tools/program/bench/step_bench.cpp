@@ -40,6 +40,7 @@ void time_together(const std::vector<TimedMethod>& methods, const Capacity& size
 
 std::vector<TimedMethod> timed_methods(std::size_t ds, double relocalise_s, std::size_t places) {
   MatcherConfig exhaustive;
+  exhaustive.keyframes = false;  // each frame does all the work
   exhaustive.sequence_length = ds;
   MatcherConfig relocalising = exhaustive;
   MatcherSettings settings;

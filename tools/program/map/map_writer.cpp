@@ -108,7 +108,8 @@ void MapWriter::add_places(const Image& image) noexcept {
   if (next_number_ == order.next_number()) return;
   // Several frames may have been taken at once: those to come are noted with the others.
   for (std::size_t row = *order.row_of_number(next_number_);
-       row < order.size() && order.frame(row) < counted_; ++row, ++next_number_) {
+       row < order.size() && order.frame(row) < counted_; ++row) {
+    next_number_ = order.number(row) + 1;
     const Came& frame = came(order.frame(row));
     const std::size_t slot = order.slot(row);
     source_frames_[slot] = frame.index;

@@ -142,6 +142,10 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "frames that what a drive starts from counts for [15]");
   options.count("standardise-horizon", config.standardisation.horizon,
                 "frames after which statistics have mostly moved on [30]");
+  options.add({"keyframes", ValueKind::on_off,
+               "where frames follow each other closely, or the robot stands, match those that show "
+               "something new [on; off under --paper]",
+               [&config](std::string_view value) { config.keyframes = parse_on_off(value); }});
   options.add(
       {"difference", ValueKind::text,
        "euclidean or mean-absolute [euclidean; mean-absolute for seqslam]",

@@ -40,15 +40,15 @@ std::span<const Answer> SourceNumbers::rename(std::span<const Answer> answers) n
   return answers_;
 }
 
-/// What the detector has counted since the last frame came just before this one, and is in the
-/// newest rows of the map, unless that was full.
+/// What the detector has counted since the last frame came just before this one.
 void SourceNumbers::note(std::uint64_t newest, std::uint64_t index) noexcept {
   for (; counted_ <= newest; ++counted_) {
     const std::uint64_t before = newest - counted_;
     recent_[at(counted_ % recent_.size())] = index - before;
-    if (map_ == nullptr || before >= map_->size()) continue;
-    const std::size_t row = map_->size() - 1 - at(before);
-    if (map_->order().number(row) == counted_) places_[map_->order().slot(row)] = index - before;
+    if (map_ == nullptr) continue;
+    if (const auto row = map_->order().row_of_number(counted_)) {
+      places_[map_->order().slot(*row)] = index - before;
+    }
   }
 }
 

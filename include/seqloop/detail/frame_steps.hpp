@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "seqloop/detail/arena.hpp"
+
+namespace seqloop {
+
+/// Which step of the matcher each of the newest frames is. A keyframe is a step of its own; the
+/// frames after it that are none are the same step.
+class FrameSteps {
+ public:
+  /// @param steps that are remembered   @param frames likewise; 0 both: each frame is a step
+  /// Allocates: from the arena only.
+  FrameSteps(Arena& arena, std::size_t steps, std::size_t frames)
+      : frame_of_(arena.take<std::uint64_t>("frames of keyframes",
+                                            steps == 0 ? 0 : std::bit_ceil(steps))),
+        step_of_(arena.take<std::uint64_t>("keyframes of frames",
+                                           frames == 0 ? 0 : std::bit_ceil(frames))) {}
+
+  /// The next frame is a step.
+  void take() noexcept {
+    if (!frame_of_.empty()) frame_of_[slot(frame_of_, steps_)] = frames_;
+    note(steps_++);
+  }
+
+  /// The next frame is the newest step.
+  void repeat() noexcept { note(steps_ - 1); }
+
+  /// So many frames never came, and as many steps, or fewer, went by with them.
+  void skip(std::uint64_t frames, std::uint64_t steps) noexcept {
+    const std::uint64_t first = frames_;
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(frames, step_of_.size()); ++i) {
+      step_of_[slot(step_of_, first + i)] = none;
+    }
+    for (std::uint64_t i = 0; i < steps; ++i, ++steps_) {
+      if (!frame_of_.empty()) frame_of_[slot(frame_of_, steps_)] = first + frames * i / steps;
+    }
+    frames_ += frames;
+  }
+
+  /// Frames so far.
+  [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
+
+  /// The first frame of a step that is remembered.
+  [[nodiscard]] std::uint64_t frame_of(std::uint64_t step) const noexcept {
+    return frame_of_.empty() ? step : frame_of_[slot(frame_of_, step)];
+  }
+
+  /// Calls `tell(frame)` for the frames that are a step, in order.
+  template <class Tell>
+  void frames_of(std::uint64_t step, Tell tell) const noexcept {
+    for (std::uint64_t frame = frame_of(step); frame < frames_; ++frame) {
+      const std::uint64_t its = step_of_[slot(step_of_, frame)];
+      if (its == step) tell(frame);
+      if (its != step && its != none) return;
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+
+  /// Rings are as long as a power of two.
+  [[nodiscard]] static std::size_t slot(std::span<const std::uint64_t> ring,
+                                        std::uint64_t number) noexcept {
+    return static_cast<std::size_t>(number) & (ring.size() - 1);
+  }
+
+  void note(std::uint64_t step) noexcept {
+    if (!step_of_.empty()) step_of_[slot(step_of_, frames_)] = step;
+    ++frames_;
+  }
+
+  std::uint64_t frames_ = 0;
+  std::uint64_t steps_ = 0;
+  std::span<std::uint64_t> frame_of_;  // by step
+  std::span<std::uint64_t> step_of_;   // by frame
+};
+
+}  // namespace seqloop

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// A slow robot, a fast camera and a robot that stands show the same sequence as any.
+#include "seqloop/detail/keyframes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "core/matcher.hpp"
+#include "core/ways.hpp"
+#include "seqloop/detail/frame_steps.hpp"
+
+namespace seqloop {
+namespace {
+
+using oracle::Vectors;
+
+/// A drive with a stop.
+Vectors with_stop(const Vectors& drive, std::size_t at, std::size_t frames) {
+  Vectors stops(drive.begin(), drive.begin() + static_cast<std::ptrdiff_t>(at));
+  for (std::size_t i = 0; i < frames; ++i) stops.push_back(drive[at]);
+  stops.insert(stops.end(), drive.begin() + static_cast<std::ptrdiff_t>(at), drive.end());
+  return stops;
+}
+
+/// Whether each frame of a drive is a keyframe. @param variance of its features
+std::vector<bool> keyframes_of(const Vectors& drive, double variance, double spacing = 0.0) {
+  ArenaMemory memory(1 << 16, {});
+  Arena arena(memory.span());
+  Keyframes keyframes(arena, drive.front().size());
+  if (spacing > 0.0) keyframes.go_by(spacing);
+  std::vector<bool> are;
+  for (const auto& descriptor : drive) are.push_back(keyframes.take(descriptor, variance));
+  return are;
+}
+
+double variance_of(const Vectors& drive) {
+  double sum = 0.0;
+  for (std::size_t d = 0; d < drive.front().size(); ++d) {
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const auto& descriptor : drive) {
+      mean += static_cast<double>(descriptor[d]);
+      squares += static_cast<double>(descriptor[d]) * static_cast<double>(descriptor[d]);
+    }
+    const auto n = static_cast<double>(drive.size());
+    sum += squares / n - mean / n * (mean / n);
+  }
+  return sum;
+}
+
+TEST(Keyframes, AreAllFramesWhereEachShowsSomethingNew) {
+  const Vectors drive = test::way(1, 300, 0.3F, 1);
+  EXPECT_EQ(std::ranges::count(keyframes_of(drive, variance_of(drive)), true), 300);
+}
+
+TEST(Keyframes, OfASlowRobotAreThoseThatShowSomethingNew) {
+  const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 8, 1);
+  const std::vector<bool> are = keyframes_of(slow, variance_of(slow));
+  const auto half = static_cast<std::ptrdiff_t>(slow.size() / 2);
+  const auto later = std::count(are.begin() + half, are.end(), true);
+  EXPECT_GT(later, half / 10);
+  EXPECT_LT(later, half / 2) << "of as many frames";
+}
+
+TEST(Keyframes, LeaveOutTheLaterPartOfAStop) {
+  const Vectors drive = test::way(1, 200, 0.3F, 1);
+  const std::vector<bool> are = keyframes_of(with_stop(drive, 100, 300), variance_of(drive));
+  EXPECT_EQ(std::ranges::count(are, true), 200 + 51);
+  EXPECT_TRUE(std::all_of(are.begin(), are.begin() + 152, [](bool is) { return is; }));
+  EXPECT_TRUE(std::all_of(are.begin() + 401, are.end(), [](bool is) { return is; }));
+}
+
+// The same frames are few beside a map whose places differ much, and all beside one like them.
+TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
+  const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 3, 1);
+  const double variance = variance_of(slow);
+  const auto all = static_cast<std::ptrdiff_t>(slow.size());
+  EXPECT_EQ(std::ranges::count(keyframes_of(slow, variance, 0.01), true), all);
+  EXPECT_LT(std::ranges::count(keyframes_of(slow, variance, 0.5), true), 2 * all / 3);
+}
+
+TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
+  ArenaMemory memory(1 << 12, {});
+  Arena arena(memory.span());
+  FrameSteps steps(arena, 0, 0);
+  for (std::uint64_t frame = 0; frame < 5; ++frame) {
+    steps.take();
+    EXPECT_EQ(steps.frame_of(frame), frame);
+    EXPECT_EQ(steps.frames(), frame + 1);
+  }
+}
+
+TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
+  ArenaMemory memory(1 << 12, {});
+  Arena arena(memory.span());
+  FrameSteps steps(arena, 8, 16);
+  steps.take();      // frame 0
+  steps.repeat();    // 1
+  steps.skip(2, 0);  // 2, 3
+  steps.repeat();    // 4
+  steps.take();      // 5
+  steps.skip(4, 2);  // 6 to 9
+  steps.take();      // 10
+  const auto frames_of = [&](std::uint64_t step) {
+    std::vector<std::uint64_t> frames;
+    steps.frames_of(step, [&](std::uint64_t frame) { frames.push_back(frame); });
+    return frames;
+  };
+  EXPECT_EQ(frames_of(0), (std::vector<std::uint64_t>{0, 1, 4}));
+  EXPECT_EQ(frames_of(1), (std::vector<std::uint64_t>{5}));
+  EXPECT_TRUE(frames_of(2).empty());
+  EXPECT_EQ(steps.frame_of(2), 6U);
+  EXPECT_EQ(steps.frame_of(3), 8U);
+  EXPECT_EQ(frames_of(4), (std::vector<std::uint64_t>{10}));
+  EXPECT_EQ(steps.frames(), 11U);
+}
+
+/// The answers of a drive by frame, each of which must have one, in time.
+std::map<std::uint64_t, Answer> answers_of(const Vectors& drive, const MatcherConfig& config,
+                                           PlaceMap& map) {
+  Detector detector(config, map);
+  std::map<std::uint64_t, Answer> given;
+  std::uint64_t frame = 0;
+  for (const auto& descriptor : drive) {
+    const FrameReport report = detector.step(descriptor);
+    EXPECT_EQ(report.newest, frame++);
+    for (const Answer& answer : report.answers) {
+      EXPECT_TRUE(given.emplace(answer.frame, answer).second) << answer.frame;
+      EXPECT_LE(report.newest - answer.frame, config.patience);
+    }
+    EXPECT_EQ(report.frame.has_value(), !report.answers.empty());
+    if (report.frame) {
+      EXPECT_EQ(*report.frame, report.answers.back().frame);
+    }
+  }
+  for (const Answer& answer : detector.finish()) {
+    EXPECT_TRUE(given.emplace(answer.frame, answer).second) << answer.frame;
+  }
+  EXPECT_EQ(given.size(), drive.size());
+  return given;
+}
+
+/// How many are accepted. @param most frames that a place may be off; all have to be right
+std::size_t accepted(const std::map<std::uint64_t, Answer>& answers, std::uint64_t most) {
+  std::size_t count = 0;
+  for (const auto& [frame, answer] : answers) {
+    if (answer.gate != Gate::match) continue;
+    ++count;
+    EXPECT_LE(std::max(frame, answer.match->place) - std::min(frame, answer.match->place), most)
+        << frame;
+  }
+  return count;
+}
+
+// Of frames that differ hardly from one to the next none tells anything; of keyframes each does.
+TEST(Keyframes, LetASlowRobotKnowWhereItIs) {
+  constexpr std::size_t slower = 6;
+  const Vectors known = test::slowly(test::way(1, 300, 0.3F, 1), slower, 1);
+  const Vectors seen = test::slowly(test::way(1, 300, 0.3F, 2), slower, 2);
+  for (const bool keyframes : {true, false}) {
+    MatcherConfig config;
+    config.keyframes = keyframes;
+    PlaceMap map = map_of(known, config);
+    const auto answers = answers_of(seen, config, map);
+    if (keyframes) {
+      EXPECT_LT(map.size(), known.size() / 2) << "less memory, too";
+      EXPECT_GT(accepted(answers, 10 * slower), seen.size() / 2);
+    } else {
+      EXPECT_EQ(map.size(), known.size());
+      EXPECT_LT(accepted(answers, 10 * slower), seen.size() / 4);
+    }
+  }
+}
+
+TEST(Keyframes, LetARobotThatStandsForLongGoOnKnowing) {
+  const Vectors known = test::way(1, 300, 0.3F, 1);
+  const Vectors seen = test::way(1, 300, 0.3F, 2);
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 400;
+  const Vectors stops = with_stop(seen, at, stop);
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  const auto answers = answers_of(stops, config, map);
+  std::size_t behind = 0;
+  for (std::uint64_t frame = at + stop; frame < stops.size(); ++frame) {
+    const Answer& answer = answers.at(frame);
+    if (answer.gate != Gate::match) continue;
+    ++behind;
+    EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(frame - stop), 5.0);
+  }
+  EXPECT_GT(behind, 120U) << "of 150";
+}
+
+TEST(Keyframes, AloneBecomePlacesAndKeepTheirNumbers) {
+  Vectors drive = test::slowly(test::way(1, 300, 0.3F, 1), 6, 1);
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  PlaceMap map(config, {drive.size(), drive.front().size()});
+  static_cast<void>(answers_of(drive, config, map));
+  EXPECT_LT(map.size(), drive.size() / 2);
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    EXPECT_EQ(map.order().number(row), map.order().frame(row));
+  }
+  EXPECT_GT(map.order().number(map.size() - 1) + 20, drive.size());
+}
+
+// Frames that cannot be read, that never came, and stops, in any order.
+TEST(Keyframes, LeaveEachFrameThatCameOneAnswer) {
+  std::mt19937 random(7);
+  std::printf("seed 7\n");
+  const Vectors slow = test::slowly(test::way(1, 200, 0.3F, 1), 5, 1);
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    for (const std::size_t patience : {0U, 3U, 120U}) {
+      MatcherConfig config;
+      config.use = use;
+      config.patience = patience;
+      PlaceMap map = use == Use::localise
+                         ? map_of(slow, config)
+                         : PlaceMap(config, {3 * slow.size(), slow.front().size()});
+      Detector detector(config, map);
+      std::map<std::uint64_t, int> came;
+      const auto take = [&](std::span<const Answer> answers) {
+        for (const Answer& answer : answers) --came[answer.frame];
+      };
+      std::uint64_t counted = 0;
+      for (std::size_t at = 0; at < slow.size(); ++at) {
+        const auto dice = random() % 40;
+        const std::uint64_t lost = dice == 0 ? 1 + random() % 12 : 0;
+        detector.skip(lost);
+        const std::size_t times = dice == 1 ? 1 + random() % 150 : 1;
+        for (std::size_t i = 0; i < times; ++i) {
+          const FrameReport report = detector.step(dice == 2 ? std::span<const float>() : slow[at]);
+          EXPECT_GE(report.newest, counted);
+          counted = report.newest + 1;
+          ++came[report.newest];
+          take(report.answers);
+          for (const Answer& answer : report.answers) {
+            EXPECT_LE(report.newest - answer.frame, patience + lost);
+          }
+        }
+      }
+      take(detector.finish());
+      for (const auto& [frame, balance] : came) EXPECT_EQ(balance, 0) << frame;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace seqloop
