@@ -73,8 +73,7 @@ std::size_t steps_kept(const MatcherConfig& config) {
 
 /// Frames whose steps are asked for: those that wait, and as many as may be skipped at once.
 std::size_t frames_kept(const MatcherConfig& config) {
-  return config.patience + Keyframes::most_apart * (config.sequence_length + 1) +
-         config.frames_at_once + 2;
+  return config.patience + config.sequence_length + config.frames_at_once + 2;
 }
 
 /// Answers that may become due at once.
@@ -140,6 +139,7 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 /// A step whose answers stand beside those of the steps before it.
 FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   const std::uint64_t newest = queries_.frames();
+  skipped_ = 0;
   const auto [readable, is_step] = take_query(descriptor);
   if (!is_step) return report_again();
   const bool became_place = config_.use == Use::localise || become_place();
@@ -212,6 +212,7 @@ std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
   }
   const std::uint64_t first = queries_.frames();
   std::array<bool, MatcherConfig::most_frames_at_once> readable;
+  skipped_ = 0;
   for (std::size_t i = 0; i < count; ++i) readable[i] = take_query(descriptors[i]).readable;
   slices_.fill_newest(*map_, count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -335,11 +336,12 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
 
 void Detector::skip(std::uint64_t frames) noexcept {
   if (frames == 0 || queries_.frames() == 0) return;
-  const std::uint64_t steps = told_.empty() ? frames : keyframes_.in(frames);
-  if (steps > config_.sequence_length) {
+  skipped_ += frames;
+  if (skipped_ > config_.sequence_length) {
     restart();
     return;
   }
+  const std::uint64_t steps = told_.empty() ? frames : keyframes_.in(frames);
   keyframes_.skip(frames);
   steps_.skip(frames, steps);
   if (steps == 0) return;

@@ -177,15 +177,12 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
   first_visit(row) = first_visit(earlier);
   const std::size_t from = std::exchange(last_linked_, row);
   if (from >= row || order_.apart(from, row) > most_between) return;
-  const std::uint64_t first = first_visit(from);
-  const std::uint64_t last = first_visit(row);
-  const std::uint64_t rows = row - from;
-  if (last < first || last - first > 2 * rows ||
-      order_.session_of_number(first) != order_.session_of_number(last)) {
-    return;
-  }
-  for (std::uint64_t i = 1; i < rows; ++i) {
-    first_visit(from + static_cast<std::size_t>(i)) = first + (last - first) * i / rows;
+  const std::optional<std::size_t> first = order_.row_of_number(first_visit(from));
+  const std::optional<std::size_t> last = order_.row_of_number(first_visit(row));
+  const std::size_t rows = row - from;
+  if (!first || !last || *last < *first || order_.apart(*first, *last) > 2 * rows) return;
+  for (std::size_t i = 1; i < rows; ++i) {
+    first_visit(from + i) = order_.number(*first + (*last - *first) * i / rows);
   }
 }
 

@@ -41,7 +41,7 @@ void VisitFinder::link(PlaceMap& map) noexcept {
   static_cast<void>(detector_.finish());
   const PlaceOrder& own = map_.order();
   const PlaceOrder& order = map.order();
-  // Each frame is a place, as in the map's newest session.
+  // The same frames are places as in the map's newest session.
   const auto row_of = [&](std::size_t row) { return order.row_of_frame(own.frame(row)); };
   for (std::size_t row = 0; row < map_.size(); ++row) {
     const std::optional<std::size_t> first = own.row_of_number(map_.first_visit(row));

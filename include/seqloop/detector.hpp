@@ -85,7 +85,7 @@ class Detector {
                                   std::span<FrameReport> reports) noexcept;
 
   /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds
-  /// of them (of the keyframes that they would be, in a dense drive) are frames at which the scene
+  /// of them, in one call or several, are frames at which the scene
   /// stood still, so that trajectories keep their velocities; closing loops, they become places.
   /// After more, what was seen before says nothing of now: none of them is counted, and the window
   /// begins anew (`warming_up`). Work: N + D copies a frame at most; no distances, no line-sums.
@@ -180,6 +180,7 @@ class Detector {
   PendingAnswers pending_;
   Keyframes keyframes_;
   FrameSteps steps_;
+  std::uint64_t skipped_ = 0;         // frames since the last that came
   bool newest_was_seen_ = false;      // the newest step is a frame that could be read
   FrameReport last_;                  // of that step
   std::optional<Answer> its_answer_;  // of that step, once it has been given

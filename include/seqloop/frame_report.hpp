@@ -31,13 +31,13 @@ inline constexpr std::size_t gates = 9;
 /// The best row of the map for a frame.
 struct Match {
   /// The place at the centre column, by its number: places are counted from 0 as they are added,
-  /// those that a full map forgets too.
+  /// with those that a full map forgets, and the frames between them that were no keyframes.
   std::uint64_t place = 0;
   float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
   /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
   /// full search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
-  double velocity = 0.0;   ///< rows a frame; NaN for single frames
+  double velocity = 0.0;   ///< rows a keyframe; NaN for single frames
   std::uint64_t head = 0;  ///< the place at the newest column
   /// `Decision::uniqueness`: the place of that runner-up; none where one of an earlier frame, or
   /// nothing, stood in.

@@ -17,8 +17,9 @@ PlaceMap synthetic_map(SyntheticPlaces& places, const MatcherConfig& config,
                        const Capacity& capacity) {
   PlaceMap map(config, capacity);
   std::vector<float> descriptor(capacity.descriptor_size);
+  double place = 0.0;
   do {
-    places.see(static_cast<double>(map.size()), 0.0F, descriptor);
+    places.see(place++, 0.0F, descriptor);
   } while (map.add(descriptor) && map.size() < capacity.places);
   return map;
 }

@@ -32,7 +32,7 @@ class PlaceOrder {
     return straight_ ? row : slots_[at(row)];
   }
 
-  /// The place's number: one more than that of the place that was added before it, or as given.
+  /// The place's number: more than that of the place that was added before it, by one or as given.
   [[nodiscard]] std::uint64_t number(std::size_t row) const noexcept { return numbers_[slot(row)]; }
 
   /// The number that the next place gets, unless one is given.

@@ -33,7 +33,8 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
     : stored_(&stored),
       map_(&map),
       learnt_(std::move(learnt)),
-      settled_after_(config.patience + PlaceMap::most_between + config.sequence_length),
+      settled_after_(config.patience + (has_keyframes(config) ? Keyframes::most_apart : 1) *
+                                           (PlaceMap::most_between + config.sequence_length)),
       next_number_(map.order().next_number()),
       came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
             MatcherConfig::most_frames_at_once + 2),
@@ -104,11 +105,10 @@ void MapWriter::add_places(const Image& image) noexcept {
   const PlaceOrder& order = map_->order();
   std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
   // What came and went between two frames is not noted at all.
-  while (next_number_ < order.next_number() && !order.row_of_number(next_number_)) ++next_number_;
-  if (next_number_ == order.next_number()) return;
+  std::size_t row = order.size();
+  while (row > 0 && order.number(row - 1) >= next_number_) --row;
   // Several frames may have been taken at once: those to come are noted with the others.
-  for (std::size_t row = *order.row_of_number(next_number_);
-       row < order.size() && order.frame(row) < counted_; ++row) {
+  for (; row < order.size() && order.frame(row) < counted_; ++row) {
     next_number_ = order.number(row) + 1;
     const Came& frame = came(order.frame(row));
     const std::size_t slot = order.slot(row);
