@@ -159,22 +159,12 @@ FrameReport Detector::report_again() noexcept {
   FrameReport report = last_;
   report.work = {};
   report.full_search = false;
-  report.frame.reset();
-  report.match.reset();
-  const bool whole = queries_.newest() >= window_began_ + config_.sequence_length;
-  report.gate = whole ? Gate::waiting : Gate::warming_up;
-  const bool told_before = its_answer_.has_value();
+  const std::optional<Answer> told_before = its_answer_;
   const std::size_t first = told_count_;
   tell(report, pending_.answers().subspan(before));
-  if (told_before) {
-    tell(*its_answer_, report.newest);
-    report.answers = told_.subspan(first, told_count_ - first);
-  }
-  if (!report.answers.empty()) {
-    report.frame = report.answers.back().frame;
-    report.gate = report.answers.back().gate;
-    report.match = report.answers.back().match;
-  }
+  if (told_before) tell(*told_before, report.newest);
+  report.answers = told_.subspan(first, told_count_ - first);
+  say_last(report, queries_.newest(), true);
   return report;
 }
 
@@ -224,14 +214,13 @@ std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
 
 /// Answers the frames whose answer is due once the newest has been taken.
 FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
-  const std::size_t before = pending_.answers().size();
   if (config_.decision == Decision::probability) {
     pending_.add(newest, readable);
     FrameReport report = match_centre(newest, readable);
     report_due(report, readable);
-    report.answers = pending_.answers().subspan(before);
     return report;
   }
+  const std::size_t before = pending_.answers().size();
   FrameReport report = match_centre(newest, readable);
   if (report.frame && report.gate != Gate::warming_up) {
     pending_.say(
@@ -247,21 +236,26 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
     report.work.sketches += pending_.believe(belief_, *map_, report.newest, window_began_);
   }
   pending_.answer(belief_, *map_, steps_, steps_.frame_of(report.newest), window_began_);
-  const std::span<const Answer> answers = pending_.answers().subspan(before);
-  const bool whole = report.newest >= window_began_ + config_.sequence_length;
-  report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
-  report.frame.reset();
-  report.match.reset();
-  if (!answers.empty()) {
-    report.frame = answers.back().frame;
-    report.gate = answers.back().gate;
-    report.match = answers.back().match;
-  }
+  report.answers = pending_.answers().subspan(before);
+  say_last(report, report.newest, readable);
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
     report.now = Belief{map_->order().number(likeliest->row),
                         static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
                         static_cast<float>(belief_.new_place())};
   }
+}
+
+/// The last of a report's answers, where there are any; what is said without one otherwise.
+/// @param newest step
+void Detector::say_last(FrameReport& report, std::uint64_t newest, bool readable) const noexcept {
+  const bool whole = newest >= window_began_ + config_.sequence_length;
+  report.gate = !readable ? Gate::frame_error : whole ? Gate::waiting : Gate::warming_up;
+  report.frame.reset();
+  report.match.reset();
+  if (report.answers.empty()) return;
+  report.frame = report.answers.back().frame;
+  report.gate = report.answers.back().gate;
+  report.match = report.answers.back().match;
 }
 
 std::span<const Answer> Detector::finish() noexcept {

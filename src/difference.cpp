@@ -17,11 +17,7 @@ double dot(std::span<const float> a, std::span<const float> b) noexcept {
 }
 
 float euclidean(std::span<const float> a, std::span<const float> b) noexcept {
-  const double square = sum_in_lanes(a.size(), [&](std::size_t i) {
-    const double apart = static_cast<double>(a[i]) - static_cast<double>(b[i]);
-    return apart * apart;
-  });
-  return static_cast<float>(std::sqrt(square));
+  return static_cast<float>(std::sqrt(squared_distance(a, b)));
 }
 
 float euclidean(double aa, double bb, double ab) noexcept {
@@ -67,6 +63,13 @@ bool all_finite(std::span<const float> values) noexcept {
     others |= (std::bit_cast<std::uint32_t>(value) & exponent) == exponent ? 1U : 0U;
   }
   return others == 0;
+}
+
+double squared_distance(std::span<const float> a, std::span<const float> b) noexcept {
+  return sum_in_lanes(a.size(), [&](std::size_t i) {
+    const double apart = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    return apart * apart;
+  });
 }
 
 double squared_norm(std::span<const float> vector) noexcept {

@@ -95,12 +95,11 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
       ++no_places_;
       return true;
     }
+    order_.count_from(order_.next_number() + no_places_);
     frame += std::exchange(no_places_, 0);
     added_.standardise(descriptor, standardised_);
     descriptor = standardised_;
   }
-  const std::uint64_t before = first == size() ? order_.next_number() : order_.number(size() - 1);
-  order_.count_from(first == size() ? before : before + (frame - order_.frame(size() - 1)));
   rows_.store(append(frame, order_.next_number()), descriptor);
   space(size() - 1);
   return true;

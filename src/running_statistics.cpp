@@ -27,12 +27,7 @@ void RunningStatistics::follow(std::span<const float> descriptor,
   // Two frames that have nothing to do with each other are on average twice the sum of the
   // variances apart, squared. A tenth of that is a scene that has changed.
   constexpr double changed = 0.1 * 2.0;
-  const double apart = sum_in_lanes(last_taken_.size(), [&](std::size_t d) {
-    const double difference =
-        static_cast<double>(descriptor[d]) - static_cast<double>(last_taken_[d]);
-    return difference * difference;
-  });
-  if (apart < changed * variances_) return;
+  if (squared_distance(last_taken_, descriptor) < changed * variances_) return;
   observe_weighted(descriptor, 1.0 / static_cast<double>(std::min(frames_ + 1, how.horizon)));
   std::ranges::copy(descriptor, last_taken_.begin());
 }

@@ -68,9 +68,9 @@ class Detector {
   ///   empty, of another size, neither of these, or blank where `blank_is_unreadable`, the frame
   ///   could not be read: it counts as one at which the scene stood still, and its answer is
   ///   `frame_error`; by uniqueness, that of the centre frame is.
-  /// Where sequences are made of keyframes (`has_keyframes`), a frame that is none becomes no
-  /// place, moves nothing, and is answered as the keyframe before it. Work: at most `most_work`.
-  /// Allocates: never.
+  /// @note Where sequences are made of keyframes (`has_keyframes`), a frame that is none becomes no
+  ///   place, moves nothing, and is answered as the keyframe before it.
+  /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 
   /// Takes several frames of a recording: the same answers as by as many steps. Localising, where
@@ -84,12 +84,12 @@ class Detector {
   [[nodiscard]] std::size_t steps(std::span<const std::span<const float>> descriptors,
                                   std::span<FrameReport> reports) noexcept;
 
-  /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds
-  /// of them, in one call or several, are frames at which the scene
-  /// stood still, so that trajectories keep their velocities; closing loops, they become places.
-  /// After more, what was seen before says nothing of now: none of them is counted, and the window
-  /// begins anew (`warming_up`). Work: N + D copies a frame at most; no distances, no line-sums.
-  /// Allocates: never. Source: src/README.md, section 5.7.
+  /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds of
+  /// them, in one call or several, are frames at which the scene stood still, so that trajectories
+  /// keep their velocities; closing loops, they become places. After more, what was seen before
+  /// says nothing of now: none of them is counted, and the window begins anew (`warming_up`). Work:
+  /// N + D copies a frame at most; no distances, no line-sums. Allocates: never. Source:
+  /// src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.
@@ -144,6 +144,7 @@ class Detector {
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
   [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
   void report_due(FrameReport& report, bool readable) noexcept;
+  void say_last(FrameReport& report, std::uint64_t newest, bool readable) const noexcept;
   /// What became of a frame.
   struct Taken {
     bool readable;

@@ -61,6 +61,9 @@ inline constexpr std::size_t float_block = 64 * dot_lanes;
 /// Whether no value is infinite or NaN. Work: looks at all values, side by side.
 [[nodiscard]] bool all_finite(std::span<const float> values) noexcept;
 
+/// Sum of the squares of what they differ by. @param a, b [n]. Work: n. Allocates: never.
+[[nodiscard]] double squared_distance(std::span<const float> a, std::span<const float> b) noexcept;
+
 /// Sum of the squares. NaN or infinite when a value is; zero only when all are.
 [[nodiscard]] double squared_norm(std::span<const float> vector) noexcept;
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
-#include "seqloop/detail/lane_sums.hpp"
+#include "seqloop/difference.hpp"
 
 namespace seqloop {
 
@@ -45,12 +45,10 @@ class Keyframes {
   /// Work: D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
     const std::uint64_t frames = ++since_change_;
-    const double apart = sum_in_lanes(last_.size(), [&](std::size_t d) {
-      const double difference = static_cast<double>(descriptor[d]) - static_cast<double>(last_[d]);
-      return difference * difference;
-    });
     const double change = is_dense() ? change_where_dense_ : change_;
-    if (apart < 2.0 * change * variance) return !is_dense() && frames < longest_stop;
+    if (squared_distance(last_, descriptor) < 2.0 * change * variance) {
+      return !is_dense() && frames < longest_stop;
+    }
     std::ranges::copy(descriptor, last_.begin());
     // A robot that stands says nothing of how fast it goes.
     const double took = static_cast<double>(std::min(frames, most_apart));
