@@ -2,6 +2,7 @@
 // seqloop-street: makes drives down a street that does not exist.
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -18,7 +19,9 @@ namespace {
 
 using namespace seqloop::street;
 
-volatile std::sig_atomic_t interrupted = 0;
+/// Atomic, because the system may give a signal to any thread: OpenCV's workers run too.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write it");
 
 void complain(const std::string& line) {
   std::fprintf(stderr, "seqloop-street: %s\n", line.c_str());
@@ -55,7 +58,7 @@ void render_drive(const Drive& drive, const std::string& name, const Job& job,
   const auto sink = open_sink(folder, name, job.format, {job.width, job.height});
   cv::Mat image;
   for (std::size_t i = 0; i < drive.frames(); ++i) {
-    if (interrupted != 0) throw std::runtime_error("interrupted: nothing was kept");
+    if (interrupted) throw std::runtime_error("interrupted: nothing was kept");
     renderer.render(drive.shot(i), image);
     sink->put(image);
     progress.step();
@@ -130,7 +133,7 @@ int main(int argc, char** argv) {
   if (!job) return 2;
   cv::setNumThreads(1);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  const auto interrupt = [](int) { interrupted = 1; };
+  const auto interrupt = [](int) { interrupted = true; };
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   try {

@@ -3,12 +3,15 @@
 
 #include <signal.h>
 
+#include <atomic>
 #include <stdexcept>
 
 namespace seqloop::program {
 namespace {
 
-volatile sig_atomic_t asked = 0;
+/// Atomic, because the system may give a signal to any thread: a library's workers run too.
+std::atomic<bool> asked = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write it");
 
 /// Gives the signals to a handler, but for those that are ignored.
 void handle_with(void (*handler)(int)) noexcept {
@@ -23,7 +26,7 @@ void handle_with(void (*handler)(int)) noexcept {
 }
 
 void ask(int /*signal*/) {
-  asked = 1;
+  asked = true;
   handle_with(SIG_DFL);  // the next one ends the program, whichever it is
 }
 
@@ -31,7 +34,7 @@ void ask(int /*signal*/) {
 
 void take_interruptions() noexcept { handle_with(ask); }
 
-bool interrupted() noexcept { return asked != 0; }
+bool interrupted() noexcept { return asked; }
 
 void stop_if_interrupted() {
   if (interrupted()) throw std::runtime_error("interrupted: nothing has been written");
