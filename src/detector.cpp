@@ -92,6 +92,9 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
   return std::abs(squares - 1.0) <= tolerance;
 }
 
+// As much is told at most of a frame that shows what an unsettled one did.
+constexpr float in_doubt = 0.95F;
+
 }  // namespace
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
@@ -148,6 +151,7 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   if (told_.empty()) return report;
   its_answer_.reset();
   last_ = report;
+  say_now(report, false);
   tell(report, report.answers);
   return report;
 }
@@ -159,31 +163,61 @@ FrameReport Detector::report_again() noexcept {
   FrameReport report = last_;
   report.work = {};
   report.full_search = false;
+  say_now(report, true);
   const std::optional<Answer> told_before = its_answer_;
   const std::size_t first = told_count_;
   tell(report, pending_.answers().subspan(before));
-  if (told_before) tell(*told_before, report.newest);
+  if (told_before) tell(*told_before, report.newest, keyframes_.is_settled());
   report.answers = told_.subspan(first, told_count_ - first);
   say_last(report, queries_.newest(), true);
   return report;
 }
 
-/// Answers a frame as its step was.
-void Detector::tell(const Answer& answer, std::uint64_t frame) noexcept {
-  told_[told_count_] = answer;
-  told_[told_count_++].frame = frame;
+/// Answers a frame as its step was. Of a robot that was carried away and stands, no more is seen
+/// than that one frame, and all would be wrong together: so it is waited for what is seen later.
+void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept {
+  Answer& told = told_[told_count_++];
+  told = answer;
+  told.frame = frame;
+  const bool stands =
+      steps_.left(answer.frame).value_or(steps_.frames()) > steps_.frame_of(answer.frame) + 1;
+  if (!settled && stands && queries_.newest() - answer.frame < config_.sequence_length) {
+    told.probability = std::min(told.probability, in_doubt);
+    if (told.gate == Gate::match && !pending_.accepts(told.probability)) told.gate = Gate::unsure;
+  }
+  if (!told.match) return;
+  told.match->stood = answered_.stood(
+      *map_, {frame, steps_.stands(answer.frame), steps_.left(answer.frame)}, told.match->place);
+  if (told.gate == Gate::match) answered_.was_there(frame);
+}
+
+/// Says which frame of a stop the newest one is believed to be.
+/// @param repeats whether it shows what the newest step does
+void Detector::say_now(FrameReport& report, bool repeats) noexcept {
+  if (!report.now) return;
+  if (repeats && !keyframes_.is_settled()) {
+    report.now->probability = std::min(report.now->probability, in_doubt);
+  }
+  const std::uint64_t frame = steps_.frames() - 1;
+  report.now->stood = believed_.stood(
+      *map_, {frame, steps_.stands(queries_.newest()), std::nullopt}, report.now->place);
+  if (report.now->probability >= static_cast<float>(PlaceMap::likely)) believed_.was_there(frame);
 }
 
 /// Puts frames into a report for steps. @param answers to steps
 void Detector::tell(FrameReport& report, std::span<const Answer> answers) noexcept {
   const std::size_t first = told_count_;
   for (const Answer& answer : answers) {
-    steps_.frames_of(answer.frame, [&](std::uint64_t frame) { tell(answer, frame); });
+    steps_.frames_of(answer.frame,
+                     [&](std::uint64_t frame, bool settled) { tell(answer, frame, settled); });
     if (answer.frame == queries_.newest()) its_answer_ = answer;
   }
   report.newest = steps_.frames() - 1;
   report.answers = told_.subspan(first, told_count_ - first);
-  if (!report.answers.empty()) report.frame = report.answers.back().frame;
+  if (report.answers.empty()) return;
+  report.frame = report.answers.back().frame;
+  report.gate = report.answers.back().gate;
+  report.match = report.answers.back().match;
 }
 
 std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
@@ -264,10 +298,10 @@ std::span<const Answer> Detector::finish() noexcept {
   const std::uint64_t end = queries_.frames();
   if (end > 0 && config_.decision == Decision::probability)
     pending_.answer(belief_, *map_, steps_, steps_.frames() - 1, end);
-  restart();
-  if (told_.empty() || end == 0) return pending_.answers();
   FrameReport report;
-  tell(report, pending_.answers());
+  report.answers = pending_.answers();
+  if (!told_.empty() && end > 0) tell(report, pending_.answers());
+  restart();
   return report.answers;
 }
 
@@ -353,6 +387,8 @@ void Detector::skip(std::uint64_t frames) noexcept {
 }
 
 void Detector::restart() noexcept {
+  answered_.begin();
+  believed_.begin();
   window_began_ = queries_.frames();
   newest_was_seen_ = false;
   ranges_.restart();
@@ -367,13 +403,13 @@ void Detector::restart() noexcept {
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
     keyframes_.skip(1);
-    steps_.take();
+    steps_.take(true);
     newest_was_seen_ = false;
     queries_.push_again();
     return {false, true};
   }
   if (!config_.standardisation.on) {
-    steps_.take();
+    steps_.take(true);
     queries_.push(descriptor);
     return {true, true};
   }
@@ -381,13 +417,24 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
   const bool is_keyframe = told_.empty() || keyframes_.take(descriptor, statistics_.variance_sum());
   if (!is_keyframe && newest_was_seen_) {
     steps_.repeat();
+    if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand();
     return {true, false};
   }
-  steps_.take();
+  steps_.take(keyframes_.is_settled());
   newest_was_seen_ = true;
   statistics_.standardise(descriptor, standardised_);
   queries_.push(standardised_);
   return {true, true};
+}
+
+/// The robot stands at the newest place, if that is the newest step.
+void Detector::stand() noexcept {
+  const PlaceOrder& order = map_->order();
+  const CandidateRun drive = running(config_, order);
+  if (drive.first < drive.last &&
+      order.frame(drive.last - 1) == steps_.frame_of(queries_.newest())) {
+    map_->stand();
+  }
 }
 
 /// Closing loops: the newest frame becomes a place, if the map has room or makes some.

@@ -270,7 +270,7 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameS
   if (!waiting.believed) return;
   answer.probability = static_cast<float>(calibrated(told(map, waiting)));
   answer.match = match(belief, map, waiting.frame);
-  const bool sure = static_cast<double>(answer.probability) >= least_;
+  const bool sure = accepts(answer.probability);
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
   answer.gate = sure ? Gate::match : is_new ? Gate::new_place : Gate::unsure;

@@ -60,7 +60,9 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
       spacing_(
           arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
       first_visits_(arena.take<std::uint64_t>(
-          "visits of one place", config.decision == Decision::probability ? capacity.places : 0)) {}
+          "visits of one place", config.decision == Decision::probability ? capacity.places : 0)),
+      stood_(arena.take<std::uint32_t>(
+          "stops at places", has_keyframes_ && capacity.sessions == 1 ? capacity.places : 0)) {}
 
 bool PlaceMap::begin_session() noexcept {
   if (!order_.begin_session()) return false;
@@ -93,6 +95,7 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
     added_.follow(descriptor, standardisation_);
     if (has_keyframes_ && !keyframes_.take(descriptor, added_.variance_sum()) && first != size()) {
       ++no_places_;
+      if (!keyframes_.is_dense()) stand();
       return true;
     }
     order_.count_from(order_.next_number() + no_places_);
@@ -141,6 +144,7 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
   if (size() == capacity() || !follows || !rows_.load(slot, place.descriptor)) return std::nullopt;
   order_.insert(session, place.frame, place.number);
   if (!first_visits_.empty()) first_visits_[slot] = place.number;
+  if (!stood_.empty()) stood_[slot] = 0;
   if (last_linked_ >= last && last + 1 < size()) ++last_linked_;
   space(last);
   return last;
@@ -156,6 +160,7 @@ bool PlaceMap::set_statistics(std::span<const double> mean, std::span<const doub
 std::size_t PlaceMap::append(std::uint64_t frame, std::uint64_t number) noexcept {
   const std::size_t slot = order_.append(frame, number);
   if (!first_visits_.empty()) first_visits_[slot] = number;
+  if (!stood_.empty()) stood_[slot] = 0;
   return slot;
 }
 
@@ -183,6 +188,32 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
   for (std::size_t i = 1; i < rows; ++i) {
     first_visit(from + i) = order_.number(*first + (*last - *first) * i / rows);
   }
+}
+
+/// The last row of a stop in one direction, from a row on. Each is at most `between_stops` from the
+/// one before it.
+/// @param session that it ends in   @param by 1 or -1
+std::size_t PlaceMap::end_of_stop(CandidateRun session, std::size_t row,
+                                  std::ptrdiff_t by) const noexcept {
+  std::size_t end = row;
+  std::size_t at = row;
+  for (std::size_t looks = 0; looks < most_looks; ++looks) {
+    at += static_cast<std::size_t>(by);
+    if (at < session.first || at >= session.last) break;
+    if (stood(at) > 0) end = at;
+    if ((at > end ? at - end : end - at) == between_stops) break;
+  }
+  return end;
+}
+
+std::optional<CandidateRun> PlaceMap::stop_at(std::size_t row, bool with_beside) const noexcept {
+  if (stood_.empty() || row >= size()) return std::nullopt;
+  const CandidateRun session = order_.around(row);
+  const std::size_t first = end_of_stop(session, row, -1);
+  const std::size_t last = end_of_stop(session, row, 1);
+  const bool between = first < row && row < last;
+  if (stood(row) == 0 && !between && (first == last || !with_beside)) return std::nullopt;
+  return CandidateRun{first, last + 1};
 }
 
 PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,

@@ -21,6 +21,7 @@
 #include "seqloop/detail/query_history.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/detail/sequence_search.hpp"
+#include "seqloop/detail/stop_frames.hpp"
 #include "seqloop/detail/trajectories.hpp"
 #include "seqloop/frame_report.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -144,6 +145,7 @@ class Detector {
   [[nodiscard]] FrameReport answer(std::uint64_t newest, bool readable) noexcept;
   [[nodiscard]] FrameReport match_centre(std::uint64_t newest, bool readable) noexcept;
   void report_due(FrameReport& report, bool readable) noexcept;
+  void say_now(FrameReport& report, bool repeats) noexcept;
   void say_last(FrameReport& report, std::uint64_t newest, bool readable) const noexcept;
   /// What became of a frame.
   struct Taken {
@@ -152,8 +154,9 @@ class Detector {
   };
   [[nodiscard]] Taken take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] FrameReport report_again() noexcept;
-  void tell(const Answer& answer, std::uint64_t frame) noexcept;
+  void tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept;
   void tell(FrameReport& report, std::span<const Answer> answers) noexcept;
+  void stand() noexcept;
   [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
@@ -187,6 +190,8 @@ class Detector {
   std::optional<Answer> its_answer_;  // of that step, once it has been given
   std::span<Answer> told_;            // of frames, where not each is a step
   std::size_t told_count_ = 0;
+  StopFrames answered_;            // what the frames were matched with that have been answered
+  StopFrames believed_;            // what the newest frames are believed to be
   std::span<float> standardised_;  // [D]
 };
 

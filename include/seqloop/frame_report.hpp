@@ -42,6 +42,13 @@ struct Match {
   /// `Decision::uniqueness`: the place of that runner-up; none where one of an earlier frame, or
   /// nothing, stood in.
   std::optional<std::uint64_t> runner_up = std::nullopt;
+  /// Frames after the place's own, at which the robot stood there: in a map of one drive, where it
+  /// stood then and now, how far that stop had got.
+  std::uint64_t stood = 0;
+
+  /// The frame of the place's drive that shows what the answer's does: a place, or one at which the
+  /// robot still stood there.
+  [[nodiscard]] std::uint64_t frame() const noexcept { return place + stood; }
 };
 
 /// What a frame cost. Follows from configuration and input alone, never from the machine.
@@ -70,6 +77,10 @@ struct Belief {
   std::uint64_t place = 0;   ///< the likeliest
   float probability = 0.0F;  ///< that it is there, 0 .. 1
   float new_place = 1.0F;    ///< that it is somewhere the map does not know, 0 .. 1
+  std::uint64_t stood = 0;   ///< as `Match::stood`
+
+  /// As `Match::frame`.
+  [[nodiscard]] std::uint64_t frame() const noexcept { return place + stood; }
 };
 
 /// What one step has to say.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -141,6 +142,30 @@ class PlaceMap {
     if (!first_visits_.empty()) first_visits_[order_.slot(row)] = number;
   }
 
+  /// The robot stands at the newest place: so does another frame, which becomes none.
+  void stand() noexcept {
+    if (stood_.empty() || size() == 0) return;
+    std::uint32_t& frames = stood_[order_.slot(size() - 1)];
+    if (frames < std::numeric_limits<std::uint32_t>::max()) ++frames;
+  }
+
+  /// Frames after a place's own at which the robot stood there. None are known in a map that has
+  /// room for several sessions: there places are what is told, not frames.
+  [[nodiscard]] std::uint64_t stood(std::size_t row) const noexcept {
+    return stood_.empty() ? 0 : stood_[order_.slot(row)];
+  }
+
+  /// The stop that a place is part of: rows at which the robot stood, with those between,
+  /// `between_stops - 1` in a row at most, that looked new nevertheless. The robot stood at the
+  /// last.
+  /// @param with_beside whether the places before and behind it, `between_stops` of them, are taken
+  ///   to be part of it, too; those behind are not in it
+  /// Work: 2 `most_looks` rows at most. Allocates: never.
+  [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row,
+                                                    bool with_beside) const noexcept;
+  static constexpr std::size_t between_stops = 2;
+  static constexpr std::size_t most_looks = 100;
+
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
   [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept {
     return order_.apart(a, b) <= beside || (!first_visits_.empty() && same_first_visit(a, b));
@@ -182,6 +207,8 @@ class PlaceMap {
   [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
   [[nodiscard]] std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
   void space(std::size_t row) noexcept;
+  [[nodiscard]] std::size_t end_of_stop(CandidateRun session, std::size_t row,
+                                        std::ptrdiff_t by) const noexcept;
   [[nodiscard]] std::optional<std::size_t> insert_unsketched(std::size_t session,
                                                              const Saved& place) noexcept;
 
@@ -203,6 +230,7 @@ class PlaceMap {
   std::span<float> spacing_;
   std::span<std::uint64_t> first_visits_;  // [capacity] by slot
   std::size_t last_linked_ = 0;            // row
+  std::span<std::uint32_t> stood_;  // [capacity] by slot: frames behind it that are no places
 };
 
 }  // namespace seqloop

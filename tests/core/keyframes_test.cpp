@@ -65,11 +65,11 @@ TEST(Keyframes, OfASlowRobotAreThoseThatShowSomethingNew) {
   EXPECT_LT(later, half / 2) << "of as many frames";
 }
 
-TEST(Keyframes, LeaveOutTheLaterPartOfAStop) {
+TEST(Keyframes, LeaveOutAStop) {
   const Vectors drive = test::way(1, 200, 0.3F, 1);
   const std::vector<bool> are = keyframes_of(with_stop(drive, 100, 300), variance_of(drive));
-  EXPECT_EQ(std::ranges::count(are, true), 200 + 51);
-  EXPECT_TRUE(std::all_of(are.begin(), are.begin() + 152, [](bool is) { return is; }));
+  EXPECT_EQ(std::ranges::count(are, true), 200);
+  EXPECT_TRUE(std::all_of(are.begin(), are.begin() + 101, [](bool is) { return is; }));
   EXPECT_TRUE(std::all_of(are.begin() + 401, are.end(), [](bool is) { return is; }));
 }
 
@@ -87,7 +87,7 @@ TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
   Arena arena(memory.span());
   FrameSteps steps(arena, 0, 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
-    steps.take();
+    steps.take(true);
     EXPECT_EQ(steps.frame_of(frame), frame);
     EXPECT_EQ(steps.frames(), frame + 1);
   }
@@ -97,16 +97,19 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   ArenaMemory memory(1 << 12, {});
   Arena arena(memory.span());
   FrameSteps steps(arena, 8, 16);
-  steps.take();      // frame 0
-  steps.repeat();    // 1
-  steps.skip(2, 0);  // 2, 3
-  steps.repeat();    // 4
-  steps.take();      // 5
-  steps.skip(4, 2);  // 6 to 9
-  steps.take();      // 10
+  steps.take(true);   // frame 0
+  steps.repeat();     // 1
+  steps.skip(2, 0);   // 2, 3
+  steps.repeat();     // 4
+  steps.take(false);  // 5
+  steps.skip(4, 2);   // 6 to 9
+  steps.take(true);   // 10
   const auto frames_of = [&](std::uint64_t step) {
     std::vector<std::uint64_t> frames;
-    steps.frames_of(step, [&](std::uint64_t frame) { frames.push_back(frame); });
+    steps.frames_of(step, [&](std::uint64_t frame, bool settled) {
+      frames.push_back(frame);
+      EXPECT_EQ(settled, step != 1);
+    });
     return frames;
   };
   EXPECT_EQ(frames_of(0), (std::vector<std::uint64_t>{0, 1, 4}));
@@ -116,6 +119,10 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   EXPECT_EQ(steps.frame_of(3), 8U);
   EXPECT_EQ(frames_of(4), (std::vector<std::uint64_t>{10}));
   EXPECT_EQ(steps.frames(), 11U);
+  EXPECT_TRUE(steps.stands(0));
+  EXPECT_TRUE(steps.stands(1)) << "the step before it has several frames";
+  EXPECT_EQ(steps.left(1), 6U);
+  EXPECT_EQ(steps.left(4), std::nullopt);
 }
 
 /// The answers of a drive by frame, each of which must have one, in time.
@@ -192,6 +199,50 @@ TEST(Keyframes, LetARobotThatStandsForLongGoOnKnowing) {
     EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(frame - stop), 5.0);
   }
   EXPECT_GT(behind, 120U) << "of 150";
+}
+
+/// A robot that is carried to another place in one frame, and stands there.
+TEST(Keyframes, LetNoRobotThatWasCarriedAwayAndStandsBelieveItsLastPlace) {
+  const Vectors known = test::way(1, 300, 0.3F, 1);
+  const Vectors seen = test::way(1, 300, 0.3F, 2);
+  Vectors drive(seen.begin(), seen.begin() + 150);
+  const Vectors elsewhere = test::way(9, 1, 0.3F, 1);
+  constexpr std::size_t stop = 400;
+  for (std::size_t i = 0; i < stop; ++i) drive.push_back(elsewhere.front());
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  const auto answers = answers_of(drive, config, map);
+  EXPECT_GT(accepted(answers, 5), 100U);
+  for (std::uint64_t frame = 150; frame < drive.size(); ++frame) {
+    EXPECT_NE(answers.at(frame).gate, Gate::match) << frame;
+  }
+}
+
+// Where drive and map both stood, the frames of the stop go by one for one.
+TEST(Keyframes, TellWhichFrameOfAStopItWas) {
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 60;
+  const Vectors known = with_stop(test::way(1, 300, 0.3F, 1), at, stop);
+  const Vectors seen = with_stop(test::way(1, 300, 0.3F, 2), at, stop);
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  EXPECT_EQ(map.size(), 300U);
+  EXPECT_EQ(map.stood(at), stop);
+  ASSERT_TRUE(map.stop_at(at, false));
+  EXPECT_EQ(map.stop_at(at, false)->first, at);
+  EXPECT_EQ(map.stop_at(at, false)->last, at + 1);
+  EXPECT_FALSE(map.stop_at(at - 1, false));
+  EXPECT_EQ(map.stop_at(at - 1, true)->first, at - 1);
+  EXPECT_EQ(map.stop_at(at + 2, true)->first, at);
+  EXPECT_FALSE(map.stop_at(at + 3, true));
+  std::size_t told = 0;
+  for (const auto& [frame, answer] : answers_of(seen, config, map)) {
+    if (answer.gate != Gate::match) continue;
+    EXPECT_LE(std::max(frame, answer.match->frame()) - std::min(frame, answer.match->frame()), 3U)
+        << frame;
+    told += frame > at && frame <= at + stop ? 1 : 0;
+  }
+  EXPECT_EQ(told, stop);
 }
 
 TEST(Keyframes, AloneBecomePlacesAndKeepTheirNumbers) {

@@ -64,6 +64,7 @@ void expect_as_a_drive(const PlaceMap& map, std::size_t first, RunningStatistics
 TEST(PlaceMap, PlacesAreStandardisedByWhatTheirSessionHasShown) {
   MatcherConfig config;
   config.arithmetic = Arithmetic::float32;
+  config.keyframes = false;  // of five random features some hardly change
   PlaceMap map(config, {300, 5, 3});
   TestArena memory;
 

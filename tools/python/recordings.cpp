@@ -40,7 +40,7 @@ py::dict columns_of(const program::MatchedDrive& matched) {
   using namespace py::literals;
   return py::dict(
       "query"_a = column([&](const Frame& frame) { return whole(frame.answer.frame); }),
-      "match"_a = column([&](const Frame& frame) { return whole(frame.answer.match->place); }),
+      "match"_a = column([&](const Frame& frame) { return whole(frame.answer.match->frame()); }),
       "score"_a = column([](const Frame& frame) { return frame.answer.match->score; }),
       "uniqueness"_a = column([](const Frame& frame) { return frame.answer.match->uniqueness; }),
       "velocity"_a = column([](const Frame& frame) { return frame.answer.match->velocity; }),

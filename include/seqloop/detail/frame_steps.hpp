@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -24,14 +25,16 @@ class FrameSteps {
         step_of_(arena.take<std::uint64_t>("keyframes of frames",
                                            frames == 0 ? 0 : std::bit_ceil(frames))) {}
 
-  /// The next frame is a step.
-  void take() noexcept {
+  /// The next frame is a step. @param settled what `frames_of` tells of its frames
+  void take(bool settled) noexcept {
+    settled_ = settled;
     if (!frame_of_.empty()) frame_of_[slot(frame_of_, steps_)] = frames_;
-    note(steps_++);
+    ++steps_;
+    repeat();
   }
 
   /// The next frame is the newest step.
-  void repeat() noexcept { note(steps_ - 1); }
+  void repeat() noexcept { note((steps_ - 1) | (settled_ ? 0 : unsettled)); }
 
   /// So many frames never came, and as many steps, or fewer, went by with them.
   void skip(std::uint64_t frames, std::uint64_t steps) noexcept {
@@ -53,18 +56,31 @@ class FrameSteps {
     return frame_of_.empty() ? step : frame_of_[slot(frame_of_, step)];
   }
 
-  /// Calls `tell(frame)` for the frames that are a step, in order.
+  /// The first frame of the next step, if it has come.
+  [[nodiscard]] std::optional<std::uint64_t> left(std::uint64_t step) const noexcept {
+    return step + 1 < steps_ ? std::optional(frame_of(step + 1)) : std::nullopt;
+  }
+
+  /// Whether a step, or the one before it, is more than a frame, so far as is known.
+  [[nodiscard]] bool stands(std::uint64_t step) const noexcept {
+    const std::uint64_t first = frame_of(step);
+    return left(step).value_or(frames_) - first > 1 || (step > 0 && first - frame_of(step - 1) > 1);
+  }
+
+  /// Calls `tell(frame, settled)` for the frames that are a step, in order.
   template <class Tell>
   void frames_of(std::uint64_t step, Tell tell) const noexcept {
     for (std::uint64_t frame = frame_of(step); frame < frames_; ++frame) {
-      const std::uint64_t its = step_of_[slot(step_of_, frame)];
-      if (its == step) tell(frame);
+      const std::uint64_t noted = step_of_[slot(step_of_, frame)];
+      const std::uint64_t its = noted == none ? none : noted & ~unsettled;
+      if (its == step) tell(frame, noted == its);
       if (its != step && its != none) return;
     }
   }
 
  private:
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+  static constexpr std::uint64_t unsettled = std::uint64_t{1} << 63;
 
   /// Rings are as long as a power of two.
   [[nodiscard]] static std::size_t slot(std::span<const std::uint64_t> ring,
@@ -79,6 +95,7 @@ class FrameSteps {
 
   std::uint64_t frames_ = 0;
   std::uint64_t steps_ = 0;
+  bool settled_ = true;                // the newest
   std::span<std::uint64_t> frame_of_;  // by step
   std::span<std::uint64_t> step_of_;   // by frame
 };

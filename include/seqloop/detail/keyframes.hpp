@@ -11,25 +11,29 @@
 
 namespace seqloop {
 
-/// Which frames of a drive are keyframes: those that sequences are made of. Where frames follow
+/// Which frames of a drive are keyframes: those that sequences are made of. A frame that shows
+/// hardly anything new beside what usually is new is none: the robot stands. Where frames follow
 /// each other so closely that the scene hardly changes from one to the next, only those are that
-/// look unlike the last one; where they do not, all are, but for the later part of a long stop. So
-/// a faster camera, a slower robot and one that stands show the same sequence. Source:
-/// src/README.md, section 5.11.
+/// look unlike the last one. So a faster camera, a slower robot and one that stands show the same
+/// sequence. Source: src/README.md, section 5.11.
 class Keyframes {
  public:
   /// A change is usually taken to be so many frames from the last one at most.
   static constexpr std::uint64_t most_apart = 4;
 
-  /// Allocates: from the arena only, 4 bytes a feature.
+  /// Allocates: from the arena only, 8 bytes a feature.
   Keyframes(Arena& arena, std::size_t descriptor_size)
-      : last_(arena.take<float>("last frame that looked new", descriptor_size)) {}
+      : last_(arena.take<float>("last keyframe", descriptor_size)),
+        last_change_(arena.take<float>("last frame that looked new", descriptor_size)) {}
 
   /// Another drive begins, of which nothing is known.
   void begin() noexcept {
-    usually_ = 1.0;
-    seen_ = at_first;
+    usually_apart_ = 1.0;
+    changes_ = at_first;
     since_change_ = 0;
+    usually_new_ = new_at_first;
+    keyframes_ = at_first;
+    since_cut_ = settled_after;
   }
 
   /// It is matched with a map. @param spacing how unlike neighbours among its places usually are: 1
@@ -42,47 +46,78 @@ class Keyframes {
 
   /// Takes the next frame. @param variance of all features together
   /// @return whether it is a keyframe
-  /// Work: D. Allocates: never.
+  /// Work: 2 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
-    const std::uint64_t frames = ++since_change_;
-    const double change = is_dense() ? change_where_dense_ : change_;
-    if (squared_distance(last_, descriptor) < 2.0 * change * variance) {
-      return !is_dense() && frames < longest_stop;
-    }
+    const bool was_dense = is_dense();
+    const bool changed = take_change(descriptor, 2.0 * variance);
+    if (was_dense && !changed) return false;
+    const double differs = squared_distance(last_, descriptor);
+    const double is_new = std::min(differs, 2.0 * variance);
+    if (!was_dense && differs < stands * usually_new_ * 2.0 * variance) return false;
     std::ranges::copy(descriptor, last_.begin());
-    // A robot that stands says nothing of how fast it goes.
-    const double took = static_cast<double>(std::min(frames, most_apart));
-    since_change_ = 0;
-    seen_ = std::min(seen_ + 1.0, memory);
-    usually_ += (took - usually_) / seen_;
+    if (variance > 0.0) {
+      keyframes_ = std::min(keyframes_ + 1.0, memory);
+      usually_new_ += (is_new / (2.0 * variance) - usually_new_) / keyframes_;
+    }
+    since_cut_ = is_new < cut * 2.0 * variance ? since_cut_ + 1 : 0;
     return true;
   }
+
+  /// Whether the scene has not changed as a whole lately, as it does when the robot is carried
+  /// away.
+  [[nodiscard]] bool is_settled() const noexcept { return since_cut_ >= settled_after; }
 
   /// Frames that never came count as frames that did.
   void skip(std::uint64_t frames) noexcept { since_change_ += frames; }
 
   /// How many keyframes as many frames are, by what is usual.
   [[nodiscard]] std::uint64_t in(std::uint64_t frames) const noexcept {
-    return is_dense() ? static_cast<std::uint64_t>(static_cast<double>(frames) / usually_) : frames;
+    return is_dense() ? static_cast<std::uint64_t>(static_cast<double>(frames) / usually_apart_)
+                      : frames;
   }
 
- private:
   /// Whether it usually takes more than a frame for the scene to change.
-  [[nodiscard]] bool is_dense() const noexcept { return usually_ > dense_; }
+  [[nodiscard]] bool is_dense() const noexcept { return usually_apart_ > dense_; }
 
-  // Later frames of a stop are none.
-  static constexpr std::uint64_t longest_stop = 52;
-  // Changes that what is usual is the mean of: as if so many had been seen already, one a frame.
+ private:
+  /// Whether a frame looks unlike the last that did. @param unrelated squared distance of two
+  /// frames that have nothing to do with each other
+  bool take_change(std::span<const float> descriptor, double unrelated) noexcept {
+    const std::uint64_t frames = ++since_change_;
+    const double change = is_dense() ? change_where_dense_ : change_;
+    if (squared_distance(last_change_, descriptor) < change * unrelated) return false;
+    std::ranges::copy(descriptor, last_change_.begin());
+    // A robot that stands says nothing of how fast it goes.
+    const double took = static_cast<double>(std::min(frames, most_apart));
+    since_change_ = 0;
+    changes_ = std::min(changes_ + 1.0, memory);
+    usually_apart_ += (took - usually_apart_) / changes_;
+    return true;
+  }
+
+  // Less than this share of what is usually new is nothing.
+  static constexpr double stands = 0.15;
+  // What is usual is a mean of so many: as if as many had been seen at first, and of as many as
+  // this at most.
   static constexpr double at_first = 20.0;
   static constexpr double memory = 200.0;
+  static constexpr double new_at_first = 0.1;
+  // So new is a cut, and so many keyframes later it is known whether the robot knows the place.
+  static constexpr double cut = 0.5;
+  static constexpr std::uint64_t settled_after = 8;
 
+  // New is by what two frames that have nothing in common differ by.
   double dense_ = 2.0;                // frames from one change to the next
-  double change_ = 0.1;               // of what two frames that have nothing in common differ by
+  double change_ = 0.1;               // so new is a change
   double change_where_dense_ = 0.15;  // likewise
   std::uint64_t since_change_ = 0;
-  double usually_ = 1.0;    // frames from one change to the next
-  double seen_ = at_first;  // changes that this is the mean of
-  std::span<float> last_;   // [D]
+  double usually_apart_ = 1.0;               // frames from one change to the next
+  double changes_ = at_first;                // that this is the mean of
+  double usually_new_ = new_at_first;        // so new is a keyframe beside the one before it
+  double keyframes_ = at_first;              // that this is the mean of
+  std::uint64_t since_cut_ = settled_after;  // keyframes
+  std::span<float> last_;                    // [D]
+  std::span<float> last_change_;             // [D]
 };
 
 }  // namespace seqloop

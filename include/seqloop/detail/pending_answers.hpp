@@ -39,6 +39,11 @@ class PendingAnswers {
   /// From here on answers are accepted from this probability on. @param least above 0 .. 1
   void accept_from(float least) noexcept;
 
+  /// Whether an answer of this probability is accepted.
+  [[nodiscard]] bool accepts(float probability) const noexcept {
+    return static_cast<double>(probability) >= least_;
+  }
+
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;
 

@@ -31,7 +31,7 @@ void add(std::vector<evaluation::Answer>& all, std::span<const Answer> answers,
   for (const Answer& answer : answers) {
     if (!answer.match) continue;
     all.push_back({.query = answer.frame,
-                   .match = answer.match->place,
+                   .match = answer.match->frame(),
                    .uncertainty = uncertainty(threshold_on, swept(threshold_on, answer)),
                    .probability = static_cast<double>(answer.probability),
                    .accepted = answer.gate == Gate::match});

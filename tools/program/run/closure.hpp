@@ -34,9 +34,9 @@ namespace seqloop::program {
     return time_s ? stamp_of(start_ns, *time_s) : 0;
   };
   return {.stamp_ns = stamp(answer.frame),
-          .match_stamp_ns = own_places ? stamp(answer.match->place) : 0,
+          .match_stamp_ns = own_places ? stamp(answer.match->frame()) : 0,
           .frame = answer.frame,
-          .match = answer.match->place,
+          .match = answer.match->frame(),
           .session = session,
           .robot = {},
           .probability = static_cast<double>(answer.probability),

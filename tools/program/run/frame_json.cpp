@@ -33,7 +33,7 @@ Json answer_json(const Answer& answer) {
   for (const char* key : of_an_answer) json[key] = nullptr;
   json["probability"] = finite(answer.probability);
   if (answer.match) {
-    json["match"] = answer.match->place;
+    json["match"] = answer.match->frame();
     json["score"] = finite(answer.match->score);
     json["uniqueness"] = finite(answer.match->uniqueness);
     json["velocity"] = finite(answer.match->velocity);
@@ -68,7 +68,7 @@ Json frame_json(const ProcessedFrame& processed, const LoopState& state) {
   json["answers"] = Json::array();
   json["now"] = nullptr;
   if (report.now) {
-    json["now"] = {{"place", report.now->place},
+    json["now"] = {{"place", report.now->frame()},
                    {"probability", finite(report.now->probability)},
                    {"new_place", finite(report.now->new_place)}};
   }

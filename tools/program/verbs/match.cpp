@@ -48,7 +48,7 @@ std::string precise(Number value) {
 /// A row of the match list.
 std::string csv_row(const MatchedFrame& frame) {
   const Match& match = *frame.answer.match;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", frame.answer.frame, match.place,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", frame.answer.frame, match.frame(),
                      precise(match.score), precise(match.uniqueness), precise(match.velocity),
                      match.head, frame.candidates, frame.k, frame.distances,
                      precise(frame.answer.probability), frame.answer.gate == Gate::match ? 1 : 0);

@@ -161,7 +161,7 @@ class RosAnswers::Impl {
     status.matches = matches_;
     status.places = newest_->map.places;
     if (report.now) {
-      status.place = report.now->place;
+      status.place = report.now->frame();
       status.probability = static_cast<double>(report.now->probability);
     }
     status.errors = at(Gate::frame_error);
