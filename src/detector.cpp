@@ -153,6 +153,7 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   last_ = report;
   say_now(report, false);
   tell(report, report.answers);
+  say_last(report, newest, readable);
   return report;
 }
 
@@ -179,9 +180,8 @@ void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noe
   Answer& told = told_[told_count_++];
   told = answer;
   told.frame = frame;
-  const bool stands =
-      steps_.left(answer.frame).value_or(steps_.frames()) > steps_.frame_of(answer.frame) + 1;
-  if (!settled && stands && queries_.newest() - answer.frame < config_.sequence_length) {
+  if (!settled && steps_.repeats(answer.frame) &&
+      queries_.newest() - answer.frame < config_.sequence_length) {
     told.probability = std::min(told.probability, in_doubt);
     if (told.gate == Gate::match && !pending_.accepts(told.probability)) told.gate = Gate::unsure;
   }
@@ -214,10 +214,6 @@ void Detector::tell(FrameReport& report, std::span<const Answer> answers) noexce
   }
   report.newest = steps_.frames() - 1;
   report.answers = told_.subspan(first, told_count_ - first);
-  if (report.answers.empty()) return;
-  report.frame = report.answers.back().frame;
-  report.gate = report.answers.back().gate;
-  report.match = report.answers.back().match;
 }
 
 std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,

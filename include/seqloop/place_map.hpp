@@ -156,10 +156,9 @@ class PlaceMap {
   }
 
   /// The stop that a place is part of: rows at which the robot stood, with those between,
-  /// `between_stops - 1` in a row at most, that looked new nevertheless. The robot stood at the
-  /// last.
-  /// @param with_beside whether the places before and behind it, `between_stops` of them, are taken
-  ///   to be part of it, too; those behind are not in it
+  /// `between_stops - 1` in a row at most, that looked new nevertheless.
+  /// @param with_beside whether a place up to `between_stops` before or behind one is part of it,
+  ///   too; then it is the first of these rows, or the last
   /// Work: 2 `most_looks` rows at most. Allocates: never.
   [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row,
                                                     bool with_beside) const noexcept;

@@ -61,10 +61,14 @@ class FrameSteps {
     return step + 1 < steps_ ? std::optional(frame_of(step + 1)) : std::nullopt;
   }
 
-  /// Whether a step, or the one before it, is more than a frame, so far as is known.
+  /// Whether a step is more than a frame, so far as is known.
+  [[nodiscard]] bool repeats(std::uint64_t step) const noexcept {
+    return left(step).value_or(frames_) > frame_of(step) + 1;
+  }
+
+  /// Whether a step, or the one before it, is more than a frame.
   [[nodiscard]] bool stands(std::uint64_t step) const noexcept {
-    const std::uint64_t first = frame_of(step);
-    return left(step).value_or(frames_) - first > 1 || (step > 0 && first - frame_of(step - 1) > 1);
+    return repeats(step) || (step > 0 && repeats(step - 1));
   }
 
   /// Calls `tell(frame, settled)` for the frames that are a step, in order.

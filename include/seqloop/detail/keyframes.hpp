@@ -7,6 +7,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/detail/usual.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -28,11 +29,9 @@ class Keyframes {
 
   /// Another drive begins, of which nothing is known.
   void begin() noexcept {
-    usually_apart_ = 1.0;
-    changes_ = at_first;
+    usually_apart_ = Usual(apart_at_first);
     since_change_ = 0;
-    usually_new_ = new_at_first;
-    keyframes_ = at_first;
+    usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
   }
 
@@ -48,18 +47,16 @@ class Keyframes {
   /// @return whether it is a keyframe
   /// Work: 2 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
+    const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense();
-    const bool changed = take_change(descriptor, 2.0 * variance);
+    const bool changed = take_change(descriptor, unrelated);
     if (was_dense && !changed) return false;
     const double differs = squared_distance(last_, descriptor);
-    const double is_new = std::min(differs, 2.0 * variance);
-    if (!was_dense && differs < stands * usually_new_ * 2.0 * variance) return false;
+    if (!was_dense && differs < stands * usually_new_.mean() * unrelated) return false;
     std::ranges::copy(descriptor, last_.begin());
-    if (variance > 0.0) {
-      keyframes_ = std::min(keyframes_ + 1.0, memory);
-      usually_new_ += (is_new / (2.0 * variance) - usually_new_) / keyframes_;
-    }
-    since_cut_ = is_new < cut * 2.0 * variance ? since_cut_ + 1 : 0;
+    const double is_new = std::min(differs, unrelated);
+    if (unrelated > 0.0) usually_new_.take(is_new / unrelated);
+    since_cut_ = is_new < cut * unrelated ? since_cut_ + 1 : 0;
     return true;
   }
 
@@ -72,12 +69,12 @@ class Keyframes {
 
   /// How many keyframes as many frames are, by what is usual.
   [[nodiscard]] std::uint64_t in(std::uint64_t frames) const noexcept {
-    return is_dense() ? static_cast<std::uint64_t>(static_cast<double>(frames) / usually_apart_)
-                      : frames;
+    if (!is_dense()) return frames;
+    return static_cast<std::uint64_t>(static_cast<double>(frames) / usually_apart_.mean());
   }
 
   /// Whether it usually takes more than a frame for the scene to change.
-  [[nodiscard]] bool is_dense() const noexcept { return usually_apart_ > dense_; }
+  [[nodiscard]] bool is_dense() const noexcept { return usually_apart_.mean() > dense_; }
 
  private:
   /// Whether a frame looks unlike the last that did. @param unrelated squared distance of two
@@ -88,19 +85,14 @@ class Keyframes {
     if (squared_distance(last_change_, descriptor) < change * unrelated) return false;
     std::ranges::copy(descriptor, last_change_.begin());
     // A robot that stands says nothing of how fast it goes.
-    const double took = static_cast<double>(std::min(frames, most_apart));
+    usually_apart_.take(static_cast<double>(std::min(frames, most_apart)));
     since_change_ = 0;
-    changes_ = std::min(changes_ + 1.0, memory);
-    usually_apart_ += (took - usually_apart_) / changes_;
     return true;
   }
 
   // Less than this share of what is usually new is nothing.
   static constexpr double stands = 0.15;
-  // What is usual is a mean of so many: as if as many had been seen at first, and of as many as
-  // this at most.
-  static constexpr double at_first = 20.0;
-  static constexpr double memory = 200.0;
+  static constexpr double apart_at_first = 1.0;
   static constexpr double new_at_first = 0.1;
   // So new is a cut, and so many keyframes later it is known whether the robot knows the place.
   static constexpr double cut = 0.5;
@@ -111,10 +103,8 @@ class Keyframes {
   double change_ = 0.1;               // so new is a change
   double change_where_dense_ = 0.15;  // likewise
   std::uint64_t since_change_ = 0;
-  double usually_apart_ = 1.0;               // frames from one change to the next
-  double changes_ = at_first;                // that this is the mean of
-  double usually_new_ = new_at_first;        // so new is a keyframe beside the one before it
-  double keyframes_ = at_first;              // that this is the mean of
+  Usual usually_apart_{apart_at_first};      // frames from one change to the next
+  Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes
   std::span<float> last_;                    // [D]
   std::span<float> last_change_;             // [D]

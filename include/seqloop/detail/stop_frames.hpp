@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "seqloop/detail/usual.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop {
@@ -44,9 +45,9 @@ class StopFrames {
     const double behind = !counts && map.stood(last) == 0 ? end - 1.0 : end;
     constexpr auto near = static_cast<double>(PlaceMap::beside);
     if (known_ && known_->place + near >= first && known_->place < behind) {
-      exactly_ = known_->place + pace_ * static_cast<double>(frame.number - known_->frame);
+      exactly_ = known_->place + pace_.mean() * static_cast<double>(frame.number - known_->frame);
     } else if (frame.leaves) {
-      exactly_ = end - pace_ * static_cast<double>(*frame.leaves - frame.number);
+      exactly_ = end - pace_.mean() * static_cast<double>(*frame.leaves - frame.number);
     } else if (exactly_ >= behind) {
       exactly_ = first;
     }
@@ -63,9 +64,7 @@ class StopFrames {
   void was_there(std::uint64_t frame) noexcept {
     if (known_ && frame == known_->frame + 1 && !known_->at_stop && !at_stop_) {
       constexpr double most = 4.0;
-      constexpr double memory = 200.0;
-      frames_ = std::min(frames_ + 1.0, memory);
-      pace_ += (std::clamp(exactly_ - known_->place, 0.0, most) - pace_) / frames_;
+      pace_.take(std::clamp(exactly_ - known_->place, 0.0, most));
     }
     known_ = Known{frame, exactly_, at_stop_};
   }
@@ -80,8 +79,7 @@ class StopFrames {
   std::optional<Known> known_;  // the newest frame of which it is known
   double exactly_ = 0.0;        // where the frame was that was asked for last
   bool at_stop_ = false;        // likewise
-  double pace_ = 1.0;           // the map's frames to one, where the robot moves
-  double frames_ = 20.0;        // that this is the mean of, as if it had been so at first
+  Usual pace_{1.0};             // the map's frames to one, where the robot moves
 };
 
 }  // namespace seqloop

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+namespace seqloop {
+
+/// What is usual in a drive: a mean that starts as if 20 values had been seen, and to which the
+/// newest adds 1/200 in the end.
+class Usual {
+ public:
+  explicit Usual(double at_first) noexcept : mean_(at_first) {}
+
+  void take(double value) noexcept {
+    constexpr double memory = 200.0;
+    seen_ = std::min(seen_ + 1.0, memory);
+    mean_ += (value - mean_) / seen_;
+  }
+
+  [[nodiscard]] double mean() const noexcept { return mean_; }
+
+ private:
+  double mean_;
+  double seen_ = 20.0;
+};
+
+}  // namespace seqloop
