@@ -176,12 +176,15 @@ FrameReport Detector::report_again() noexcept {
 
 /// Answers a frame as its step was. Of a robot that was carried away and stands, no more is seen
 /// than that one frame, and all would be wrong together: so it is waited for what is seen later.
+/// Where it has been carried away before, it may be so again from there: what is seen then tells
+/// nothing of where it stood.
 void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept {
   Answer& told = told_[told_count_++];
   told = answer;
   told.frame = frame;
-  if (!settled && steps_.repeats(answer.frame) &&
-      queries_.newest() - answer.frame < config_.sequence_length) {
+  const bool too_early = queries_.newest() - answer.frame < config_.sequence_length;
+  const bool carried_on = pending_.jumps() > 0.0 && steps_.is_isolated(answer.frame);
+  if (!settled && steps_.repeats(answer.frame) && (too_early || carried_on)) {
     told.probability = std::min(told.probability, in_doubt);
     if (told.gate == Gate::match && !pending_.accepts(told.probability)) told.gate = Gate::unsure;
   }
@@ -399,13 +402,13 @@ void Detector::restart() noexcept {
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
     keyframes_.skip(1);
-    steps_.take(true);
+    steps_.take(true, false);
     newest_was_seen_ = false;
     queries_.push_again();
     return {false, true};
   }
   if (!config_.standardisation.on) {
-    steps_.take(true);
+    steps_.take(true, false);
     queries_.push(descriptor);
     return {true, true};
   }
@@ -416,7 +419,7 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
     if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand();
     return {true, false};
   }
-  steps_.take(keyframes_.is_settled());
+  steps_.take(keyframes_.is_settled(), keyframes_.is_cut());
   newest_was_seen_ = true;
   statistics_.standardise(descriptor, standardised_);
   queries_.push(standardised_);

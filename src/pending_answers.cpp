@@ -236,14 +236,21 @@ bool PendingAnswers::is_sure(const PlaceMap& map, const Waiting& waiting) noexce
          told(map, waiting) >= least_before_calibration_;
 }
 
-/// Whether a frame beside this one was on a trace that goes through another place.
-bool PendingAnswers::meets_another(const PlaceMap& map, const Waiting& waiting) noexcept {
+/// Whether a frame beside this one was on a trace that goes through another place. Where the robot
+/// has been carried away before, it is enough that a frame after it may not be on this one any
+/// more.
+bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept {
+  const bool carried = jump_rate_.chance() > 0.0;
   const std::uint64_t first = waiting.frame - std::min(waiting.frame, frames_at_a_meeting);
   const std::uint64_t last = std::min(waiting.frame + frames_at_a_meeting + 1, end_);
   for (std::uint64_t frame = first; frame < last; ++frame) {
     const Waiting& other = at(frame);
+    if (other.frame != frame) continue;
     constexpr double half = 0.5;
-    if (other.frame != frame || !other.believed || probability(other) <= half) continue;
+    constexpr double surely = 0.97;
+    const double on_a_trace = other.believed ? probability(other) : 0.0;
+    if (carried && frame > waiting.frame && on_a_trace <= surely) return true;
+    if (on_a_trace <= half) continue;
     if (map.order().apart(other.row, waiting.row) <= own + 2 * frames_at_a_meeting) continue;
     const bool both_there = std::max(other.row, waiting.row) < map.size();
     if (!both_there || !map.same_place(other.row, waiting.row)) return true;
@@ -255,7 +262,7 @@ bool PendingAnswers::meets_another(const PlaceMap& map, const Waiting& waiting) 
 double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcept {
   const double is_there = probability(waiting);
   if (is_there <= most_in_doubt) return is_there;
-  if (meets_another(map, waiting)) return most_in_doubt;
+  if (is_beside_a_jump(map, waiting)) return most_in_doubt;
   const double if_carried = waiting.right * waiting.carried.where(waiting.left);
   return std::min(is_there, std::max(most_in_doubt, if_carried));
 }

@@ -193,15 +193,20 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
 /// The last row of a stop in one direction, from a row on. Each is at most `between_stops` from the
 /// one before it.
 /// @param session that it ends in   @param by 1 or -1
-std::size_t PlaceMap::end_of_stop(CandidateRun session, std::size_t row,
-                                  std::ptrdiff_t by) const noexcept {
+/// @param beside_it how far the first is at most, where the robot did not stand at the row
+std::size_t PlaceMap::end_of_stop(CandidateRun session, std::size_t row, std::ptrdiff_t by,
+                                  std::size_t beside_it) const noexcept {
   std::size_t end = row;
   std::size_t at = row;
+  std::size_t reach = stood(row) > 0 ? between_stops : beside_it;
   for (std::size_t looks = 0; looks < most_looks; ++looks) {
     at += static_cast<std::size_t>(by);
     if (at < session.first || at >= session.last) break;
-    if (stood(at) > 0) end = at;
-    if ((at > end ? at - end : end - at) == between_stops) break;
+    if (stood(at) > 0) {
+      end = at;
+      reach = between_stops;
+    }
+    if ((at > end ? at - end : end - at) == reach) break;
   }
   return end;
 }
@@ -209,8 +214,9 @@ std::size_t PlaceMap::end_of_stop(CandidateRun session, std::size_t row,
 std::optional<CandidateRun> PlaceMap::stop_at(std::size_t row, bool with_beside) const noexcept {
   if (stood_.empty() || row >= size()) return std::nullopt;
   const CandidateRun session = order_.around(row);
-  const std::size_t first = end_of_stop(session, row, -1);
-  const std::size_t last = end_of_stop(session, row, 1);
+  const std::size_t beside_it = with_beside ? beside_stops : between_stops;
+  const std::size_t first = end_of_stop(session, row, -1, beside_it);
+  const std::size_t last = end_of_stop(session, row, 1, beside_it);
   const bool between = first < row && row < last;
   if (stood(row) == 0 && !between && (first == last || !with_beside)) return std::nullopt;
   return CandidateRun{first, last + 1};

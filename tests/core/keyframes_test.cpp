@@ -3,6 +3,7 @@
 #include "seqloop/detail/keyframes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 #include <span>
@@ -11,6 +12,7 @@
 #include "core/matcher.hpp"
 #include "core/ways.hpp"
 #include "seqloop/detail/frame_steps.hpp"
+#include "seqloop/detail/stop_frames.hpp"
 
 namespace seqloop {
 namespace {
@@ -87,7 +89,7 @@ TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
   Arena arena(memory.span());
   FrameSteps steps(arena, 0, 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
-    steps.take(true);
+    steps.take(true, false);
     EXPECT_EQ(steps.frame_of(frame), frame);
     EXPECT_EQ(steps.frames(), frame + 1);
   }
@@ -97,13 +99,13 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   ArenaMemory memory(1 << 12, {});
   Arena arena(memory.span());
   FrameSteps steps(arena, 8, 16);
-  steps.take(true);   // frame 0
-  steps.repeat();     // 1
-  steps.skip(2, 0);   // 2, 3
-  steps.repeat();     // 4
-  steps.take(false);  // 5
-  steps.skip(4, 2);   // 6 to 9
-  steps.take(true);   // 10
+  steps.take(true, false);  // frame 0
+  steps.repeat();           // 1
+  steps.skip(2, 0);         // 2, 3
+  steps.repeat();           // 4
+  steps.take(false, true);  // 5
+  steps.skip(4, 2);         // 6 to 9
+  steps.take(true, false);  // 10
   const auto frames_of = [&](std::uint64_t step) {
     std::vector<std::uint64_t> frames;
     steps.frames_of(step, [&](std::uint64_t frame, bool settled) {
@@ -121,8 +123,37 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   EXPECT_EQ(steps.frames(), 11U);
   EXPECT_TRUE(steps.stands(0));
   EXPECT_TRUE(steps.stands(1)) << "the step before it has several frames";
-  EXPECT_EQ(steps.left(1), 6U);
+  EXPECT_EQ(steps.left(1), 10U) << "it may have stood in the gap";
   EXPECT_EQ(steps.left(4), std::nullopt);
+}
+
+TEST(FrameSteps, MakeOneStopOfTwoWithAFrameBetween) {
+  ArenaMemory memory(1 << 12, {});
+  Arena arena(memory.span());
+  FrameSteps steps(arena, 16, 64);
+  // Steps of so many frames: 0, 1, 2, 3 to 5, 6, 7 to 10, 11, 12, 13.
+  for (const std::size_t frames : std::array<std::size_t, 9>{1, 1, 1, 3, 1, 4, 1, 1, 1}) {
+    steps.take(true, false);
+    for (std::size_t i = 1; i < frames; ++i) steps.repeat();
+  }
+  for (std::uint64_t step = 0; step < 9; ++step) {
+    EXPECT_EQ(steps.stands(step), step >= 2 && step <= 6) << step;
+  }
+  EXPECT_EQ(steps.left(0), 1U);
+  for (std::uint64_t step = 1; step <= 5; ++step) EXPECT_EQ(steps.left(step), 11U) << step;
+  EXPECT_EQ(steps.left(6), 12U);
+  EXPECT_EQ(steps.left(8), std::nullopt) << "the next has not come";
+}
+
+TEST(FrameSteps, AreIsolatedBetweenTwoCuts) {
+  ArenaMemory memory(1 << 12, {});
+  Arena arena(memory.span());
+  FrameSteps steps(arena, 8, 16);
+  for (const bool cut : {false, true, true, false, true}) steps.take(true, cut);
+  for (std::uint64_t step = 0; step < 5; ++step) {
+    EXPECT_EQ(steps.is_isolated(step), step == 1) << step;
+    EXPECT_EQ(steps.frame_of(step), step);
+  }
 }
 
 /// The answers of a drive by frame, each of which must have one, in time.
@@ -234,7 +265,8 @@ TEST(Keyframes, TellWhichFrameOfAStopItWas) {
   EXPECT_FALSE(map.stop_at(at - 1, false));
   EXPECT_EQ(map.stop_at(at - 1, true)->first, at - 1);
   EXPECT_EQ(map.stop_at(at + 2, true)->first, at);
-  EXPECT_FALSE(map.stop_at(at + 3, true));
+  EXPECT_EQ(map.stop_at(at + 3, true)->first, at);
+  EXPECT_FALSE(map.stop_at(at + 4, true));
   std::size_t told = 0;
   for (const auto& [frame, answer] : answers_of(seen, config, map)) {
     if (answer.gate != Gate::match) continue;
@@ -243,6 +275,58 @@ TEST(Keyframes, TellWhichFrameOfAStopItWas) {
     told += frame > at && frame <= at + stop ? 1 : 0;
   }
   EXPECT_EQ(told, stop);
+}
+
+// Who comes to a stop is at its beginning, even if nothing is known of him before.
+TEST(StopFrames, BeginWhereTheRobotComesToTheStop) {
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 60;
+  MatcherConfig config;
+  const PlaceMap map = map_of(with_stop(test::way(1, 300, 0.3F, 1), at, stop), config);
+  const auto told = [&](std::uint64_t frame, std::uint64_t place, std::uint64_t leaves) {
+    StopFrames frames;
+    frames.begin();
+    const std::uint64_t stood = frames.stood(map, {frame, true, leaves}, place);
+    return place + stood;
+  };
+  // The robot stands from its 20th frame to its 80th.
+  EXPECT_EQ(told(19, at, 81), at) << "the frame before, matched with the stop";
+  EXPECT_EQ(told(19, at + stop + 2, 81), at + 1) << "likewise, with the second behind it";
+  EXPECT_EQ(told(20, at, 81), at);
+  EXPECT_EQ(told(50, at, 81), at + 30);
+  EXPECT_EQ(told(80, at, 81), at + 60);
+}
+
+/// It is carried to a picture that looks like the place it would come to next, stands there, and is
+/// carried back to the way. Where it never was carried away before, the picture is believed.
+TEST(Keyframes, LetNoRobotThatIsCarriedAboutBelieveInAPictureAlone) {
+  const Vectors known = test::way(1, 400, 0.3F, 1);
+  const Vectors seen = test::way(1, 400, 0.3F, 2);
+  const Vectors foreign = test::way(9, 1, 0.3F, 1);
+  constexpr std::size_t stop = 30;
+  for (const bool carried : {false, true}) {
+    Vectors drive;
+    const auto pass = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+      drive.insert(drive.end(), seen.begin() + first, seen.begin() + last);
+    };
+    if (carried) pass(240, 300);
+    if (carried) pass(140, 200);
+    pass(0, 60);
+    const std::size_t stands = drive.size();
+    // Half of what it would see, and half of what it never saw.
+    Vectors picture{seen[60]};
+    for (std::size_t d = 0; d < picture.front().size(); ++d) {
+      picture.front()[d] += 1.1F * foreign.front()[d];
+    }
+    for (std::size_t i = 0; i < stop; ++i) drive.push_back(test::unit(picture).front());
+    pass(61, 120);
+    MatcherConfig config;
+    PlaceMap map = map_of(known, config);
+    const auto answers = answers_of(drive, config, map);
+    for (std::uint64_t frame = stands; frame < stands + stop; ++frame) {
+      EXPECT_EQ(answers.at(frame).gate == Gate::match, !carried) << frame;
+    }
+  }
 }
 
 TEST(Keyframes, AloneBecomePlacesAndKeepTheirNumbers) {

@@ -138,6 +138,33 @@ TEST(PendingAnswers, AreTheLessSureTheOftenerTheRobotIsCarriedAway) {
   }
 }
 
+/// Windows overlap, so that the first frames after a jump look as if they were on the trace before
+/// it: where there have been jumps, its last ones are not believed.
+TEST(PendingAnswers, AreNotSureOfTheLastFramesOfATraceAfterJumps) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  const oracle::Vectors foreign = test::way(9, 60, 0.3F, 2);
+  const auto last_accepted = [&](std::initializer_list<std::size_t> pieces) {
+    oracle::Vectors query;
+    std::vector<std::optional<std::size_t>> rows;
+    for (const std::size_t first : pieces) {
+      for (std::size_t row = first; row < first + 60; ++row) {
+        rows.emplace_back(row);
+        query.push_back(known[row]);
+      }
+    }
+    const std::size_t end = query.size();
+    query.insert(query.end(), foreign.begin(), foreign.end());
+    rows.resize(query.size());
+    std::uint64_t last = 0;
+    for (const Answer& answer : answers_with_lines(query, rows)) {
+      if (answer.gate == Gate::match) last = std::max(last, answer.frame);
+    }
+    return end - 1 - last;
+  };
+  EXPECT_EQ(last_accepted({20, 80}), 0U) << "one way on";
+  EXPECT_EQ(last_accepted({20, 120}), 2U) << "after a jump";
+}
+
 /// Which side of a jump a frame was on is known less well than where either side is.
 TEST(PendingAnswers, AreNotSureOfTheFramesWhereTwoTracesMeet) {
   const oracle::Vectors known = test::way(1, 200, 0.3F, 2);

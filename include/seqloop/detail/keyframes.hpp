@@ -64,6 +64,9 @@ class Keyframes {
   /// away.
   [[nodiscard]] bool is_settled() const noexcept { return since_cut_ >= settled_after; }
 
+  /// Whether it changed so from the keyframe before the newest one to that.
+  [[nodiscard]] bool is_cut() const noexcept { return since_cut_ == 0; }
+
   /// Frames that never came count as frames that did.
   void skip(std::uint64_t frames) noexcept { since_change_ += frames; }
 
