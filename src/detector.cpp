@@ -68,7 +68,7 @@ std::optional<double> spacing_of(const PlaceMap& map) {
 /// Steps whose frames are asked for: those that wait, and the newest that are no candidates yet.
 std::size_t steps_kept(const MatcherConfig& config) {
   return std::max(config.patience, config.exclude) + 2 * config.sequence_length +
-         config.frames_at_once + 2;
+         config.frames_at_once + PlaceMap::most_looks + 2;
 }
 
 /// Frames whose steps are asked for: those that wait, and as many as may be skipped at once.
@@ -189,9 +189,11 @@ void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noe
     if (told.gate == Gate::match && !pending_.accepts(told.probability)) told.gate = Gate::unsure;
   }
   if (!told.match) return;
-  told.match->stood = answered_.stood(
-      *map_, {frame, steps_.stands(answer.frame), steps_.left(answer.frame)}, told.match->place);
-  if (told.gate == Gate::match) answered_.was_there(frame);
+  const auto stop = steps_.stop_at(answer.frame);
+  const StopFrame at = answered_.at(*map_, stop, frame, told.match->place);
+  told.match->place = at.place;
+  told.match->stood = at.stood;
+  if (!stop && told.gate == Gate::match) answered_.was_at(frame, at.place);
 }
 
 /// Says which frame of a stop the newest one is believed to be.
@@ -202,9 +204,12 @@ void Detector::say_now(FrameReport& report, bool repeats) noexcept {
     report.now->probability = std::min(report.now->probability, in_doubt);
   }
   const std::uint64_t frame = steps_.frames() - 1;
-  report.now->stood = believed_.stood(
-      *map_, {frame, steps_.stands(queries_.newest()), std::nullopt}, report.now->place);
-  if (report.now->probability >= static_cast<float>(PlaceMap::likely)) believed_.was_there(frame);
+  const auto stop = steps_.stop_at(queries_.newest());
+  const StopFrame at = believed_.at(*map_, stop, frame, report.now->place);
+  report.now->place = at.place;
+  report.now->stood = at.stood;
+  constexpr auto likely = static_cast<float>(PlaceMap::likely);
+  if (!stop && report.now->probability >= likely) believed_.was_at(frame, at.place);
 }
 
 /// Puts frames into a report for steps. @param answers to steps
@@ -402,13 +407,13 @@ void Detector::restart() noexcept {
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
     keyframes_.skip(1);
-    steps_.take(true, false);
+    steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     queries_.push_again();
     return {false, true};
   }
   if (!config_.standardisation.on) {
-    steps_.take(true, false);
+    steps_.take(true, FrameSteps::Shows::something_new);
     queries_.push(descriptor);
     return {true, true};
   }
@@ -419,7 +424,10 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
     if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand();
     return {true, false};
   }
-  steps_.take(keyframes_.is_settled(), keyframes_.is_cut());
+  using enum FrameSteps::Shows;
+  steps_.take(keyframes_.is_settled(), !is_keyframe          ? the_same
+                                       : keyframes_.is_cut() ? another_scene
+                                                             : something_new);
   newest_was_seen_ = true;
   statistics_.standardise(descriptor, standardised_);
   queries_.push(standardised_);

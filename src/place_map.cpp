@@ -190,35 +190,24 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
   }
 }
 
-/// The last row of a stop in one direction, from a row on. Each is at most `between_stops` from the
-/// one before it.
-/// @param session that it ends in   @param by 1 or -1
-/// @param beside_it how far the first is at most, where the robot did not stand at the row
-std::size_t PlaceMap::end_of_stop(CandidateRun session, std::size_t row, std::ptrdiff_t by,
-                                  std::size_t beside_it) const noexcept {
-  std::size_t end = row;
-  std::size_t at = row;
-  std::size_t reach = stood(row) > 0 ? between_stops : beside_it;
-  for (std::size_t looks = 0; looks < most_looks; ++looks) {
-    at += static_cast<std::size_t>(by);
-    if (at < session.first || at >= session.last) break;
-    if (stood(at) > 0) {
-      end = at;
-      reach = between_stops;
-    }
-    if ((at > end ? at - end : end - at) == reach) break;
-  }
-  return end;
-}
-
-std::optional<CandidateRun> PlaceMap::stop_at(std::size_t row, bool with_beside) const noexcept {
+std::optional<CandidateRun> PlaceMap::stop_at(std::size_t row) const noexcept {
   if (stood_.empty() || row >= size()) return std::nullopt;
   const CandidateRun session = order_.around(row);
-  const std::size_t beside_it = with_beside ? beside_stops : between_stops;
-  const std::size_t first = end_of_stop(session, row, -1, beside_it);
-  const std::size_t last = end_of_stop(session, row, 1, beside_it);
-  const bool between = first < row && row < last;
-  if (stood(row) == 0 && !between && (first == last || !with_beside)) return std::nullopt;
+  const auto stands = [&](std::size_t at, std::uint64_t frames) {
+    return at >= session.first && at < session.last && stood(at) >= frames;
+  };
+  const auto stands_long = [&](std::size_t at) { return stands(at, stop_frames); };
+  std::size_t off = 0;
+  while (off <= beside_stops && !stands_long(row + off) && !stands_long(row - off)) ++off;
+  if (off > beside_stops) return std::nullopt;
+  std::size_t first = stands_long(row + off) ? row + off : row - off;
+  std::size_t last = first;
+  for (std::size_t at = last + 1; at <= row + most_looks && at - last <= between_stops; ++at) {
+    if (stands(at, 1)) last = at;
+  }
+  for (std::size_t at = first; at-- > 0 && at + most_looks >= row && first - at <= between_stops;) {
+    if (stands(at, 1)) first = at;
+  }
   return CandidateRun{first, last + 1};
 }
 

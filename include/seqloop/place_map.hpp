@@ -155,17 +155,15 @@ class PlaceMap {
     return stood_.empty() ? 0 : stood_[order_.slot(row)];
   }
 
-  /// The stop that a place is part of: rows at which the robot stood, with those between,
-  /// `between_stops - 1` in a row at most, that looked new nevertheless.
-  /// @param with_beside whether a place up to `beside_stops` before or behind one is part of it,
-  ///   too: a place that a frame is matched with may be off by as much; then it is the first of
-  ///   these rows, or the last
-  /// Work: 2 `most_looks` rows at most. Allocates: never.
-  [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row,
-                                                    bool with_beside) const noexcept;
+  /// The stop that a place is part of, or at most `beside_stops` rows from: rows at which the robot
+  /// stood for `stop_frames` or more, with `between_stops - 1` in a row at most that looked new
+  /// nevertheless.
+  /// Work: `most_looks` rows at most, either way. Allocates: never.
+  [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row) const noexcept;
+  static constexpr std::size_t stop_frames = 4;
   static constexpr std::size_t between_stops = 2;
   static constexpr std::size_t beside_stops = 3;
-  static constexpr std::size_t most_looks = 100;
+  static constexpr std::size_t most_looks = 10;
 
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
   [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept {
@@ -208,8 +206,6 @@ class PlaceMap {
   [[nodiscard]] std::optional<std::size_t> row_to_go(std::size_t keep) noexcept;
   [[nodiscard]] std::size_t append(std::uint64_t frame, std::uint64_t number) noexcept;
   void space(std::size_t row) noexcept;
-  [[nodiscard]] std::size_t end_of_stop(CandidateRun session, std::size_t row, std::ptrdiff_t by,
-                                        std::size_t beside_it) const noexcept;
   [[nodiscard]] std::optional<std::size_t> insert_unsketched(std::size_t session,
                                                              const Saved& place) noexcept;
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/matcher.hpp"
@@ -18,6 +20,7 @@ namespace seqloop {
 namespace {
 
 using oracle::Vectors;
+using enum FrameSteps::Shows;
 
 /// A drive with a stop.
 Vectors with_stop(const Vectors& drive, std::size_t at, std::size_t frames) {
@@ -89,7 +92,7 @@ TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
   Arena arena(memory.span());
   FrameSteps steps(arena, 0, 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
-    steps.take(true, false);
+    steps.take(true, something_new);
     EXPECT_EQ(steps.frame_of(frame), frame);
     EXPECT_EQ(steps.frames(), frame + 1);
   }
@@ -99,13 +102,13 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   ArenaMemory memory(1 << 12, {});
   Arena arena(memory.span());
   FrameSteps steps(arena, 8, 16);
-  steps.take(true, false);  // frame 0
-  steps.repeat();           // 1
-  steps.skip(2, 0);         // 2, 3
-  steps.repeat();           // 4
-  steps.take(false, true);  // 5
-  steps.skip(4, 2);         // 6 to 9
-  steps.take(true, false);  // 10
+  steps.take(true, something_new);   // frame 0
+  steps.repeat();                    // 1
+  steps.skip(2, 0);                  // 2, 3
+  steps.repeat();                    // 4
+  steps.take(false, another_scene);  // 5
+  steps.skip(4, 2);                  // 6 to 9
+  steps.take(true, something_new);   // 10
   const auto frames_of = [&](std::uint64_t step) {
     std::vector<std::uint64_t> frames;
     steps.frames_of(step, [&](std::uint64_t frame, bool settled) {
@@ -121,39 +124,58 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   EXPECT_EQ(steps.frame_of(3), 8U);
   EXPECT_EQ(frames_of(4), (std::vector<std::uint64_t>{10}));
   EXPECT_EQ(steps.frames(), 11U);
-  EXPECT_TRUE(steps.stands(0));
-  EXPECT_TRUE(steps.stands(1)) << "the step before it has several frames";
-  EXPECT_EQ(steps.left(1), 10U) << "it may have stood in the gap";
-  EXPECT_EQ(steps.left(4), std::nullopt);
 }
 
 TEST(FrameSteps, MakeOneStopOfTwoWithAFrameBetween) {
   ArenaMemory memory(1 << 12, {});
   Arena arena(memory.span());
-  FrameSteps steps(arena, 16, 64);
-  // Steps of so many frames: 0, 1, 2, 3 to 5, 6, 7 to 10, 11, 12, 13.
-  for (const std::size_t frames : std::array<std::size_t, 9>{1, 1, 1, 3, 1, 4, 1, 1, 1}) {
-    steps.take(true, false);
+  FrameSteps steps(arena, 32, 64);
+  // Steps of so many frames: 0 to 4 one each, 5 to 9, 10, 11 and 12, 13 to 17 one each.
+  for (const std::size_t frames :
+       std::array<std::size_t, 13>{1, 1, 1, 1, 1, 5, 1, 2, 1, 1, 1, 1, 1}) {
+    steps.take(true, something_new);
     for (std::size_t i = 1; i < frames; ++i) steps.repeat();
   }
-  for (std::uint64_t step = 0; step < 9; ++step) {
-    EXPECT_EQ(steps.stands(step), step >= 2 && step <= 6) << step;
+  for (std::uint64_t step = 0; step < 13; ++step) {
+    SCOPED_TRACE(step);
+    const auto stop = steps.stop_at(step);
+    ASSERT_EQ(stop.has_value(), step >= 2 && step <= 8)
+        << "at most three steps beside the long one";
+    if (!stop) continue;
+    EXPECT_EQ(stop->came, 5U);
+    EXPECT_EQ(stop->left, 13U);
+    EXPECT_TRUE(stop->seen_to_come);
   }
-  EXPECT_EQ(steps.left(0), 1U);
-  for (std::uint64_t step = 1; step <= 5; ++step) EXPECT_EQ(steps.left(step), 11U) << step;
-  EXPECT_EQ(steps.left(6), 12U);
-  EXPECT_EQ(steps.left(8), std::nullopt) << "the next has not come";
+}
+
+TEST(FrameSteps, AreNoStopsWhereFramesComeTwice) {
+  ArenaMemory memory(1 << 12, {});
+  Arena arena(memory.span());
+  FrameSteps steps(arena, 32, 64);
+  for (std::size_t step = 0; step < 20; ++step) {
+    steps.take(true, something_new);
+    steps.repeat();
+    EXPECT_FALSE(steps.stop_at(step)) << step;
+  }
 }
 
 TEST(FrameSteps, AreIsolatedBetweenTwoCuts) {
   ArenaMemory memory(1 << 12, {});
   Arena arena(memory.span());
-  FrameSteps steps(arena, 8, 16);
-  for (const bool cut : {false, true, true, false, true}) steps.take(true, cut);
-  for (std::uint64_t step = 0; step < 5; ++step) {
+  FrameSteps steps(arena, 16, 32);
+  for (const FrameSteps::Shows shows :
+       {something_new, another_scene, another_scene, something_new, another_scene}) {
+    steps.take(true, shows);
+  }
+  steps.skip(1, 1);            // a frame that never came,
+  steps.take(true, the_same);  // and what it may have shown
+  for (std::uint64_t step = 0; step < 7; ++step) {
     EXPECT_EQ(steps.is_isolated(step), step == 1) << step;
     EXPECT_EQ(steps.frame_of(step), step);
+    EXPECT_EQ(steps.repeats(step), step >= 4) << step;
   }
+  steps.take(true, another_scene);
+  for (std::uint64_t step = 4; step < 7; ++step) EXPECT_TRUE(steps.is_isolated(step)) << step;
 }
 
 /// The answers of a drive by frame, each of which must have one, in time.
@@ -259,14 +281,13 @@ TEST(Keyframes, TellWhichFrameOfAStopItWas) {
   PlaceMap map = map_of(known, config);
   EXPECT_EQ(map.size(), 300U);
   EXPECT_EQ(map.stood(at), stop);
-  ASSERT_TRUE(map.stop_at(at, false));
-  EXPECT_EQ(map.stop_at(at, false)->first, at);
-  EXPECT_EQ(map.stop_at(at, false)->last, at + 1);
-  EXPECT_FALSE(map.stop_at(at - 1, false));
-  EXPECT_EQ(map.stop_at(at - 1, true)->first, at - 1);
-  EXPECT_EQ(map.stop_at(at + 2, true)->first, at);
-  EXPECT_EQ(map.stop_at(at + 3, true)->first, at);
-  EXPECT_FALSE(map.stop_at(at + 4, true));
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    const auto rows = map.stop_at(row);
+    ASSERT_EQ(rows.has_value(), row + 3 >= at && row <= at + 3) << row;
+    if (!rows) continue;
+    EXPECT_EQ(rows->first, at);
+    EXPECT_EQ(rows->last, at + 1);
+  }
   std::size_t told = 0;
   for (const auto& [frame, answer] : answers_of(seen, config, map)) {
     if (answer.gate != Gate::match) continue;
@@ -277,24 +298,74 @@ TEST(Keyframes, TellWhichFrameOfAStopItWas) {
   EXPECT_EQ(told, stop);
 }
 
-// Who comes to a stop is at its beginning, even if nothing is known of him before.
-TEST(StopFrames, BeginWhereTheRobotComesToTheStop) {
+// Who comes to a stop is at its beginning, even if nothing is known of him before, and frames may
+// be asked for in any order.
+TEST(StopFrames, GoByTogetherInDriveAndMap) {
   constexpr std::size_t at = 150;
-  constexpr std::size_t stop = 60;
+  constexpr std::size_t length = 60;
   MatcherConfig config;
-  const PlaceMap map = map_of(with_stop(test::way(1, 300, 0.3F, 1), at, stop), config);
-  const auto told = [&](std::uint64_t frame, std::uint64_t place, std::uint64_t leaves) {
-    StopFrames frames;
-    frames.begin();
-    const std::uint64_t stood = frames.stood(map, {frame, true, leaves}, place);
-    return place + stood;
-  };
+  const PlaceMap map = map_of(with_stop(test::way(1, 300, 0.3F, 1), at, length), config);
   // The robot stands from its 20th frame to its 80th.
-  EXPECT_EQ(told(19, at, 81), at) << "the frame before, matched with the stop";
-  EXPECT_EQ(told(19, at + stop + 2, 81), at + 1) << "likewise, with the second behind it";
-  EXPECT_EQ(told(20, at, 81), at);
-  EXPECT_EQ(told(50, at, 81), at + 30);
-  EXPECT_EQ(told(80, at, 81), at + 60);
+  const FrameSteps::Stop stop{20, true, 81};
+  const auto told = [&](const StopFrames& frames, std::uint64_t frame, std::uint64_t place) {
+    const StopFrame found = frames.at(map, stop, frame, place);
+    return found.place + found.stood;
+  };
+  StopFrames frames;
+  frames.begin();
+  EXPECT_EQ(told(frames, 19, at), at) << "on its way there";
+  EXPECT_EQ(told(frames, 19, at - 1), at - 1);
+  EXPECT_EQ(told(frames, 19, at + length + 2), at) << "two places behind it";
+  EXPECT_EQ(told(frames, 80, at), at + 60);
+  EXPECT_EQ(told(frames, 50, at), at + 30) << "before the one that was asked for";
+  EXPECT_EQ(told(frames, 20, at + length + 3), at) << "three places behind it";
+  EXPECT_EQ(told(frames, 30, at + length + 4), at + length + 4) << "four";
+  EXPECT_EQ(told(frames, 82, at + length + 2), at + length + 2);
+  frames.was_at(85, at + length + 5);
+  EXPECT_EQ(told(frames, 50, at), at + 30) << "what came later";
+  const StopFrame moves = frames.at(map, std::nullopt, 50, at);
+  EXPECT_EQ(moves.place, at);
+  EXPECT_EQ(moves.stood, 0U) << "only the map's drive stood";
+  StopFrames known;
+  known.begin();
+  known.was_at(18, at - 4);
+  EXPECT_EQ(told(known, 30, at), at + 8) << "it was four places before, two frames before";
+  const FrameSteps::Stop carried{20, false, 81};
+  EXPECT_EQ(frames.at(map, carried, 80, at).stood, length) << "counted back";
+}
+
+/// Each frame twice, as of a camera of 15 frames a second that is read at 30, or every second one;
+/// in the map, in the drive, or in both: no stop that frames could be counted on through.
+TEST(StopFrames, AreNotTakenForFramesThatComeTwice) {
+  const auto stutters = [](const Vectors& drive, std::size_t every) {
+    Vectors seen;
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      seen.push_back(drive[i]);
+      if (every > 0 && i % every == 0) seen.push_back(drive[i]);
+    }
+    return seen;
+  };
+  const auto frame_of = [](std::size_t of_the_way, std::size_t every) {
+    return every == 0 ? of_the_way : of_the_way + (of_the_way + every - 1) / every;
+  };
+  for (std::size_t twice_then = 0; twice_then < 3; ++twice_then) {
+    for (std::size_t twice_now = 0; twice_now < 3; ++twice_now) {
+      SCOPED_TRACE(std::to_string(twice_then) + " " + std::to_string(twice_now));
+      MatcherConfig config;
+      PlaceMap map = map_of(stutters(test::way(1, 300, 0.3F, 1), twice_then), config);
+      const auto answers = answers_of(stutters(test::way(1, 300, 0.3F, 2), twice_now), config, map);
+      std::size_t right = 0;
+      for (std::size_t i = 0; i < 300; ++i) {
+        const Answer& answer = answers.at(frame_of(i, twice_now));
+        if (answer.gate != Gate::match) continue;
+        const auto frame = static_cast<std::int64_t>(answer.match->frame());
+        const auto wanted = static_cast<std::int64_t>(frame_of(i, twice_then));
+        EXPECT_LE(std::abs(frame - wanted), 6) << i;
+        ++right;
+      }
+      EXPECT_GT(right, 250U);
+    }
+  }
 }
 
 /// It is carried to a picture that looks like the place it would come to next, stands there, and is
@@ -321,10 +392,29 @@ TEST(Keyframes, LetNoRobotThatIsCarriedAboutBelieveInAPictureAlone) {
     for (std::size_t i = 0; i < stop; ++i) drive.push_back(test::unit(picture).front());
     pass(61, 120);
     MatcherConfig config;
-    PlaceMap map = map_of(known, config);
-    const auto answers = answers_of(drive, config, map);
-    for (std::uint64_t frame = stands; frame < stands + stop; ++frame) {
-      EXPECT_EQ(answers.at(frame).gate == Gate::match, !carried) << frame;
+    for (const bool one_is_lost : {false, true}) {
+      PlaceMap map = map_of(known, config);
+      Detector detector(config, map);
+      std::size_t accepted = 0;
+      const auto take = [&](std::span<const Answer> answers) {
+        for (const Answer& answer : answers) {
+          const bool stood = answer.frame >= stands && answer.frame < stands + stop;
+          accepted += stood && answer.gate == Gate::match ? 1 : 0;
+        }
+      };
+      for (std::size_t frame = 0; frame < drive.size(); ++frame) {
+        if (one_is_lost && frame == stands + stop / 2) {
+          detector.skip(1);
+        } else {
+          take(detector.step(drive[frame]).answers);
+        }
+      }
+      take(detector.finish());
+      if (carried) {
+        EXPECT_EQ(accepted, 0U) << one_is_lost;
+      } else {
+        EXPECT_GE(accepted, stop - 1) << one_is_lost;
+      }
     }
   }
 }

@@ -324,15 +324,18 @@ class SameAsTheProgram(unittest.TestCase):
         self.assertNotEqual(said[0], said[1])
 
     def test_answers_frame_by_frame(self) -> None:
-        matches = seqloop.match(self.reference, self.query)
-        places = seqloop.PlaceMap(len(self.reference), self.reference.shape[1])
-        places.add_drive(self.reference)
+        # With a stop, of which frames are told, not places.
+        reference, query = (numpy.insert(drive, [60] * 30, drive[60], axis=0) for drive in (self.reference, self.query))
+        matches = seqloop.match(reference, query)
+        places = seqloop.PlaceMap(len(reference), reference.shape[1])
+        places.add_drive(reference)
         detector = seqloop.Detector(places)
-        answers = [answer for row in self.query for answer in detector.step(row).answers] + detector.finish()
-        stepped = [(answer.frame, answer.match.place, numpy.float32(answer.probability), answer.gate == "match")
+        answers = [answer for row in query for answer in detector.step(row).answers] + detector.finish()
+        stepped = [(answer.frame, answer.match.frame, numpy.float32(answer.probability), answer.gate == "match")
                    for answer in sorted(answers, key=lambda answer: answer.frame) if answer.match]
         self.assertEqual(stepped, list(zip(matches.query, matches.match, matches.probability, matches.accepted)))
         self.assertGreater(matches.accepted.sum(), 20)
+        self.assertTrue(any(answer.match.stood for answer in answers if answer.match))
 
     def test_measures(self) -> None:
         out = self.work / "matches.csv"

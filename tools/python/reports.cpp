@@ -32,9 +32,11 @@ void add_reports(py::module_& module) {
       .def_readonly("velocity", &Match::velocity)
       .def_readonly("head", &Match::head)
       .def_readonly("runner_up", &Match::runner_up)
+      .def_readonly("stood", &Match::stood)
+      .def_property_readonly("frame", &Match::frame)
       .def("__repr__", [](const Match& match) {
-        return "Match" +
-               shown(match, {"place", "score", "uniqueness", "velocity", "head", "runner_up"});
+        return "Match" + shown(match, {"place", "score", "uniqueness", "velocity", "head",
+                                       "runner_up", "stood"});
       });
   py::class_<Answer>(module, "Answer", "What is said of one frame in the end.")
       .def_readonly("frame", &Answer::frame)
@@ -48,8 +50,10 @@ void add_reports(py::module_& module) {
       .def_readonly("place", &Belief::place)
       .def_readonly("probability", &Belief::probability)
       .def_readonly("new_place", &Belief::new_place)
+      .def_readonly("stood", &Belief::stood)
+      .def_property_readonly("frame", &Belief::frame)
       .def("__repr__", [](const Belief& belief) {
-        return "Belief" + shown(belief, {"place", "probability", "new_place"});
+        return "Belief" + shown(belief, {"place", "probability", "new_place", "stood"});
       });
   py::class_<Work>(module, "Work", "What a frame cost; the same on every machine.")
       .def_readonly("candidates", &Work::candidates)

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
+#include "seqloop/place_map.hpp"
 
 namespace seqloop {
 
@@ -25,12 +26,18 @@ class FrameSteps {
         step_of_(arena.take<std::uint64_t>("keyframes of frames",
                                            frames == 0 ? 0 : std::bit_ceil(frames))) {}
 
-  /// The next frame is a step.
-  /// @param settled what `frames_of` tells of its frames
-  /// @param cut     whether it has nothing to do with the step before it
-  void take(bool settled, bool cut) noexcept {
+  /// What a step shows beside the one before it: the same, or nothing that could be seen; something
+  /// new; or nothing that has to do with it.
+  enum class Shows : std::uint8_t { the_same, something_new, another_scene };
+
+  /// The next frame is a step. @param settled what `frames_of` tells of its frames
+  void take(bool settled, Shows shows) noexcept {
     settled_ = settled;
-    if (!frame_of_.empty()) frame_of_[slot(frame_of_, steps_)] = frames_ | (cut ? flag : 0);
+    if (!frame_of_.empty()) {
+      const bool same = shows == Shows::the_same;
+      const bool cut = shows == Shows::another_scene;
+      frame_of_[slot(frame_of_, steps_)] = frames_ | (cut ? flag : 0) | (same ? second_flag : 0);
+    }
     ++steps_;
     repeat();
   }
@@ -45,7 +52,8 @@ class FrameSteps {
       step_of_[slot(step_of_, first + i)] = none;
     }
     for (std::uint64_t i = 0; i < steps; ++i, ++steps_) {
-      if (!frame_of_.empty()) frame_of_[slot(frame_of_, steps_)] = first + frames * i / steps;
+      if (!frame_of_.empty())
+        frame_of_[slot(frame_of_, steps_)] = (first + frames * i / steps) | second_flag;
     }
     frames_ += frames;
   }
@@ -55,35 +63,51 @@ class FrameSteps {
 
   /// The first frame of a step that is remembered.
   [[nodiscard]] std::uint64_t frame_of(std::uint64_t step) const noexcept {
-    return frame_of_.empty() ? step : frame_of_[slot(frame_of_, step)] & ~flag;
+    return frame_of_.empty() ? step : frame_of_[slot(frame_of_, step)] & ~(flag | second_flag);
   }
 
-  /// Whether a step has nothing to do with the one before it, nor with the one after it.
+  /// Whether a step, and those that show the same, have nothing to do with what came before them,
+  /// nor with what comes after. Work: `PlaceMap::most_looks` steps at most, either way.
   [[nodiscard]] bool is_isolated(std::uint64_t step) const noexcept {
-    return is_cut(step) && step + 1 < steps_ && is_cut(step + 1);
+    std::uint64_t first = step;
+    while (shows_the_same(first) && first > 0 && step - first < PlaceMap::most_looks) --first;
+    std::uint64_t next = step + 1;
+    while (shows_the_same(next) && next - step <= PlaceMap::most_looks) ++next;
+    return is_cut(first) && is_cut(next);
   }
 
-  /// The first frame after a step and the stop that it is part of, or is at most one frame before,
-  /// if it has come. Steps of several frames with one frame at most between two are one stop.
-  /// Work: `most_looks` steps at most. Allocates: never.
-  [[nodiscard]] std::optional<std::uint64_t> left(std::uint64_t step) const noexcept {
-    std::uint64_t end = step;
-    for (std::uint64_t at = step + 1; at < std::min(steps_, step + most_looks); ++at) {
-      if (repeats(at)) end = at;
-      if (at - end == between_stops) break;
-    }
-    return end + 1 < steps_ ? std::optional(frame_of(end + 1)) : std::nullopt;
-  }
-
-  /// Whether a step is more than a frame, so far as is known.
+  /// Whether more than a frame shows what a step does, so far as is known.
   [[nodiscard]] bool repeats(std::uint64_t step) const noexcept {
-    return (step + 1 < steps_ ? frame_of(step + 1) : frames_) > frame_of(step) + 1;
+    return frames_in(step) > 1 || shows_the_same(step) || shows_the_same(step + 1);
   }
 
-  /// Whether a step, or one beside it, is more than a frame.
-  [[nodiscard]] bool stands(std::uint64_t step) const noexcept {
-    return repeats(step) || (step > 0 && repeats(step - 1)) ||
-           (step + 1 < steps_ && repeats(step + 1));
+  /// Steps at which the robot stood, for long at one of them: as `PlaceMap::stop_at` has it.
+  struct Stop {
+    std::uint64_t came;                 ///< the first frame
+    bool seen_to_come;                  ///< whether the step before it leads to it
+    std::optional<std::uint64_t> left;  ///< the first frame after it, if it has come
+  };
+
+  /// The stop that a step is part of, or comes right before or after.
+  /// Work: `PlaceMap::most_looks` steps at most, either way. Allocates: never.
+  [[nodiscard]] std::optional<Stop> stop_at(std::uint64_t step) const noexcept {
+    std::uint64_t off = 0;
+    const auto before = [&] { return step - std::min(step, off); };
+    while (off <= PlaceMap::beside_stops && !stands_long(step + off) && !stands_long(before()))
+      ++off;
+    if (off > PlaceMap::beside_stops) return std::nullopt;
+    std::uint64_t first = stands_long(step + off) ? step + off : before();
+    std::uint64_t last = first;
+    const std::uint64_t end = std::min(steps_, step + PlaceMap::most_looks);
+    for (std::uint64_t at = last + 1; at < end && at - last <= PlaceMap::between_stops; ++at) {
+      if (repeats(at)) last = at;
+    }
+    const std::uint64_t begin = step - std::min<std::uint64_t>(step, PlaceMap::most_looks);
+    for (std::uint64_t at = first; at-- > begin && first - at <= PlaceMap::between_stops;) {
+      if (repeats(at)) first = at;
+    }
+    return Stop{frame_of(first), first > 0 && !is_cut(first),
+                last + 1 < steps_ ? std::optional(frame_of(last + 1)) : std::nullopt};
   }
 
   /// Calls `tell(frame, settled)` for the frames that are a step, in order.
@@ -100,11 +124,26 @@ class FrameSteps {
  private:
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
   static constexpr std::uint64_t flag = std::uint64_t{1} << 63;
-  static constexpr std::uint64_t between_stops = 2;
-  static constexpr std::uint64_t most_looks = 100;
+  static constexpr std::uint64_t second_flag = std::uint64_t{1} << 62;
 
-  [[nodiscard]] bool is_cut(std::uint64_t step) const noexcept {
-    return !frame_of_.empty() && (frame_of_[slot(frame_of_, step)] & flag) != 0;
+  /// So far as is known; 0: the step has not come.
+  [[nodiscard]] std::uint64_t frames_in(std::uint64_t step) const noexcept {
+    if (step >= steps_) return 0;
+    return (step + 1 < steps_ ? frame_of(step + 1) : frames_) - frame_of(step);
+  }
+
+  [[nodiscard]] bool stands_long(std::uint64_t step) const noexcept {
+    return frames_in(step) > PlaceMap::stop_frames;
+  }
+
+  [[nodiscard]] bool has(std::uint64_t step, std::uint64_t which) const noexcept {
+    return step < steps_ && !frame_of_.empty() && (frame_of_[slot(frame_of_, step)] & which) != 0;
+  }
+
+  [[nodiscard]] bool is_cut(std::uint64_t step) const noexcept { return has(step, flag); }
+
+  [[nodiscard]] bool shows_the_same(std::uint64_t step) const noexcept {
+    return has(step, second_flag);
   }
 
   /// Rings are as long as a power of two.
@@ -121,7 +160,7 @@ class FrameSteps {
   std::uint64_t frames_ = 0;
   std::uint64_t steps_ = 0;
   bool settled_ = true;                // the newest
-  std::span<std::uint64_t> frame_of_;  // by step, with a flag where it is a cut
+  std::span<std::uint64_t> frame_of_;  // by step, with flags for what it shows
   std::span<std::uint64_t> step_of_;   // by frame, with a flag where it is not settled
 };
 

@@ -52,7 +52,7 @@ class Keyframes {
     const bool changed = take_change(descriptor, unrelated);
     if (was_dense && !changed) return false;
     const double differs = squared_distance(last_, descriptor);
-    if (!was_dense && differs < stands * usually_new_.mean() * unrelated) return false;
+    if (!was_dense && differs <= stands * usually_new_.mean() * unrelated) return false;
     std::ranges::copy(descriptor, last_.begin());
     const double is_new = std::min(differs, unrelated);
     if (unrelated > 0.0) usually_new_.take(is_new / unrelated);
@@ -85,7 +85,7 @@ class Keyframes {
   bool take_change(std::span<const float> descriptor, double unrelated) noexcept {
     const std::uint64_t frames = ++since_change_;
     const double change = is_dense() ? change_where_dense_ : change_;
-    if (squared_distance(last_change_, descriptor) < change * unrelated) return false;
+    if (squared_distance(last_change_, descriptor) <= change * unrelated) return false;
     std::ranges::copy(descriptor, last_change_.begin());
     // A robot that stands says nothing of how fast it goes.
     usually_apart_.take(static_cast<double>(std::min(frames, most_apart)));

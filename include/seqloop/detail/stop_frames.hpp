@@ -6,79 +6,84 @@
 #include <cstdint>
 #include <optional>
 
+#include "seqloop/detail/frame_steps.hpp"
 #include "seqloop/detail/usual.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop {
 
-/// Which frame of a stop a frame was matched with: those of one stop all show the same, and few of
-/// them are places. Where drive and map both stood, their frames are taken to have gone by as they
-/// did before, from the first of them that is known. Source: src/README.md, section 5.12.
+/// A frame of a map's drive: a place, or so many frames after it, at which the robot stood there.
+struct StopFrame {
+  std::uint64_t place;
+  std::uint64_t stood;
+};
+
+/// Which frame of a stop a frame was matched with. Those of one stop all show the same, and few of
+/// them are places. Where drive and map both stood for long, the frames of the two stops are taken
+/// to go by together. Source: src/README.md, section 5.12.
 class StopFrames {
  public:
   /// Nothing is known of where the robot was.
   void begin() noexcept { *this = {}; }
 
-  /// A frame of the newest step, or of one before it.
-  struct Frame {
-    std::uint64_t number;
-    bool stands;                          ///< whether it is one of several that show the same
-    std::optional<std::uint64_t> leaves;  ///< the first that showed something else, if it has come
-  };
-
-  /// Says which frame of a stop it was at.
-  /// @param place that it was matched with: stays, or becomes one of the same stop
-  /// @return frames after that one
+  /// @param stop  of the drive, that the frame is part of or beside; none: it is neither
+  /// @param place that the frame was matched with
+  /// @return that place or, where the map has a stop, a frame of that, or the place beside it
   /// Work: `PlaceMap::stop_at`. Allocates: never.
-  [[nodiscard]] std::uint64_t stood(const PlaceMap& map, const Frame& frame,
-                                    std::uint64_t& place) noexcept {
-    const std::optional<std::size_t> row = map.order().row_of_number(place);
-    const auto stop = row ? map.stop_at(*row, frame.stands) : std::nullopt;
-    at_stop_ = stop.has_value();
-    exactly_ = static_cast<double>(place);
-    if (!stop) return 0;
-    const std::size_t last = stop->last - 1;
-    const auto first = static_cast<double>(map.order().number(stop->first));
-    const auto end = static_cast<double>(map.order().number(last) + map.stood(last) + 1);
-    // Who was at the place behind a stop was there too early, unless he had stood through it.
-    const bool counts = known_ && known_->at_stop;
-    const double behind = !counts && map.stood(last) == 0 ? end - 1.0 : end;
-    constexpr auto near = static_cast<double>(PlaceMap::beside);
-    if (known_ && known_->place + near >= first && known_->place < behind) {
-      exactly_ = known_->place + pace_.mean() * static_cast<double>(frame.number - known_->frame);
-    } else if (frame.leaves) {
-      exactly_ = end - pace_.mean() * static_cast<double>(*frame.leaves - frame.number);
-    } else if (exactly_ >= behind) {
-      exactly_ = first;
+  [[nodiscard]] StopFrame at(const PlaceMap& map, const std::optional<FrameSteps::Stop>& stop,
+                             std::uint64_t frame, std::uint64_t place) const noexcept {
+    const PlaceOrder& order = map.order();
+    const auto row = stop ? order.row_of_number(place) : std::nullopt;
+    const auto rows = row ? map.stop_at(*row) : std::nullopt;
+    if (!rows) return {place, 0};
+    std::size_t there = rows->last - 1;
+    // On its way to the stop the robot is at its first frame, or before it; on its way from there
+    // it may be beyond it.
+    if (frame < stop->came) return {order.number(std::min(*row, rows->first)), 0};
+    const auto first = static_cast<double>(order.number(rows->first));
+    const auto end = static_cast<double>(order.number(there) + map.stood(there));
+    double at = first;
+    if (stop->seen_to_come || !stop->left) {
+      at = comes(*stop, first, end) + pace_.mean() * static_cast<double>(frame - stop->came);
+    } else {
+      at = end + 1.0 -
+           pace_.mean() * (static_cast<double>(*stop->left) - static_cast<double>(frame));
     }
-    exactly_ = std::clamp(exactly_, first, end - 1.0);
+    if (stop->left && frame >= *stop->left && *row > there && at > end) return {place, 0};
     constexpr double half = 0.5;
-    const auto number = static_cast<std::uint64_t>(exactly_ + half);
-    std::size_t at = last;
-    while (map.order().number(at) > number) --at;
-    place = map.order().number(at);
-    return number - place;
+    const auto number = static_cast<std::uint64_t>(std::clamp(at, first, end) + half);
+    while (order.number(there) > number) --there;
+    // Frames that never came may lie between two places at which it stood.
+    return {order.number(there), std::min(number - order.number(there), map.stood(there))};
   }
 
-  /// The frame that was asked for last was there, for all that is known.
-  void was_there(std::uint64_t frame) noexcept {
-    if (known_ && frame == known_->frame + 1 && !known_->at_stop && !at_stop_) {
-      constexpr double most = 4.0;
-      pace_.take(std::clamp(exactly_ - known_->place, 0.0, most));
+  /// The robot was at a place with a frame, beside no stop, for all that is known.
+  void was_at(std::uint64_t frame, std::uint64_t place) noexcept {
+    if (known_ && frame <= known_->frame) return;
+    if (known_ && frame == known_->frame + 1 && place >= known_->place) {
+      constexpr std::uint64_t most = 4;
+      pace_.take(static_cast<double>(std::min(place - known_->place, most)));
     }
-    known_ = Known{frame, exactly_, at_stop_};
+    known_ = Known{frame, place};
   }
 
  private:
   struct Known {
     std::uint64_t frame;
-    double place;
-    bool at_stop;
+    std::uint64_t place;
   };
 
-  std::optional<Known> known_;  // the newest frame of which it is known
-  double exactly_ = 0.0;        // where the frame was that was asked for last
-  bool at_stop_ = false;        // likewise
+  /// Where the robot was when it came to a stop: as it went on to there, or at the map's.
+  [[nodiscard]] double comes(const FrameSteps::Stop& stop, double first,
+                             double end) const noexcept {
+    constexpr std::uint64_t lately = 10;
+    if (!known_ || known_->frame >= stop.came || known_->frame + lately < stop.came) return first;
+    const double came = static_cast<double>(known_->place) +
+                        pace_.mean() * static_cast<double>(stop.came - known_->frame);
+    return came + static_cast<double>(PlaceMap::beside) >= first && came < end ? came : first;
+  }
+
+  std::optional<Known> known_;  // the newest
   Usual pace_{1.0};             // the map's frames to one, where the robot moves
 };
 

@@ -74,9 +74,10 @@ StoredMap::StoredMap(const MapSettings& settings, const MatcherConfig& config,
 }
 
 Capacity StoredMap::capacity(std::size_t drive) const noexcept {
-  // One session more: the drive's. It is some bytes where nothing is added.
+  // One session more: the drive's. It is some bytes where nothing is added. Two in a new map, too:
+  // what is told of each of its drives are places (src/README.md, 5.12), which the file keeps.
   return {std::max<std::size_t>(places_ + (read_only_ ? 0 : drive), 1), descriptor_size_,
-          names_.size() + 1};
+          std::max<std::size_t>(names_.size() + 1, 2)};
 }
 
 void StoredMap::load(PlaceMap& map) {

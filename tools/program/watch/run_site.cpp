@@ -79,7 +79,7 @@ void RunSite::choose_shown() {
     shown_.frame = known              ? Json(answer->frame)
                    : frames_.newest() ? Json(*frames_.newest())
                                       : Json();
-    shown_.place = known ? Json(answer->match->place) : Json();
+    shown_.place = known ? Json(answer->match->frame()) : Json();
     const bool two = known && answer->gate == Gate::not_unique && answer->match->runner_up;
     shown_.runner_up = two ? Json(*answer->match->runner_up) : Json();
   }

@@ -83,7 +83,7 @@ void RunView::take(const Answer& answer) {
   last_match_ = answer;
   ++loops_seen_;
   if (loop_list_.size() == most_loops) return;
-  loop_list_.push_back({answer.frame, answer.match->place, time_of(answer.frame),
+  loop_list_.push_back({answer.frame, answer.match->frame(), time_of(answer.frame),
                         answer.probability, answer.match->uniqueness, Verdict::none, std::nullopt});
 }
 
@@ -167,7 +167,7 @@ Json RunView::status() const {
 Json RunView::row(const Shown& shown) {
   const Answer& answer = shown.answer;
   return {shown.number, answer.frame, static_cast<int>(answer.gate),
-          answer.match ? Json(answer.match->place) : Json(nullptr),
+          answer.match ? Json(answer.match->frame()) : Json(nullptr),
           finite(thousandths(static_cast<double>(answer.probability)))};
 }
 

@@ -17,7 +17,7 @@ Frame by frame, as a robot does:
     for picture in camera:                                 # uint8 [H, W, 3], blue first
         for answer in detector.step(describer.describe(picture)).answers:
             if answer.gate == "match":
-                print(f"frame {answer.frame} is place {answer.match.place}")
+                print(f"frame {answer.frame} shows what {answer.match.frame} did")
 
 A map that lasts, in the same files as `seqloop run --map`, of many sessions:
 
