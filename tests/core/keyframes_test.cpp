@@ -321,6 +321,10 @@ TEST(StopFrames, GoByTogetherInDriveAndMap) {
   EXPECT_EQ(told(frames, 20, at + length + 3), at) << "three places behind it";
   EXPECT_EQ(told(frames, 30, at + length + 4), at + length + 4) << "four";
   EXPECT_EQ(told(frames, 82, at + length + 2), at + length + 2);
+  const FrameSteps::Stop shorter{20, true, 40};
+  EXPECT_EQ(frames.at(map, shorter, 40, at + length + 1).place, at + length + 1) << "it drove on";
+  const FrameSteps::Stop nearly{20, true, 70};
+  EXPECT_EQ(frames.at(map, nearly, 70, at + length + 1).stood, 50U) << "it hardly moved";
   frames.was_at(85, at + length + 5);
   EXPECT_EQ(told(frames, 50, at), at + 30) << "what came later";
   const StopFrame moves = frames.at(map, std::nullopt, 50, at);

@@ -37,8 +37,7 @@ class StopFrames {
     const auto rows = row ? map.stop_at(*row) : std::nullopt;
     if (!rows) return {place, 0};
     std::size_t there = rows->last - 1;
-    // On its way to the stop the robot is at its first frame, or before it; on its way from there
-    // it may be beyond it.
+    // On its way to the stop the robot is at its first frame, or before it.
     if (frame < stop->came) return {order.number(std::min(*row, rows->first)), 0};
     const auto first = static_cast<double>(order.number(rows->first));
     const auto end = static_cast<double>(order.number(there) + map.stood(there));
@@ -49,7 +48,11 @@ class StopFrames {
       at = end + 1.0 -
            pace_.mean() * (static_cast<double>(*stop->left) - static_cast<double>(frame));
     }
-    if (stop->left && frame >= *stop->left && *row > there && at > end) return {place, 0};
+    // On its way from there it may be beyond it, unless it hardly moves and the map's stop is
+    // nearly over.
+    constexpr double nearly = 20.0;
+    const bool has_left = stop->left && frame >= *stop->left && *row > there;
+    if (has_left && (at > end || at + nearly < end)) return {place, 0};
     constexpr double half = 0.5;
     const auto number = static_cast<std::uint64_t>(std::clamp(at, first, end) + half);
     while (order.number(there) > number) --there;
