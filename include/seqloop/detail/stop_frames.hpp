@@ -41,13 +41,12 @@ class StopFrames {
     if (frame < stop->came) return {order.number(std::min(*row, rows->first)), 0};
     const auto first = static_cast<double>(order.number(rows->first));
     const auto end = static_cast<double>(order.number(there) + map.stood(there));
-    double at = first;
-    if (stop->seen_to_come || !stop->left) {
-      at = comes(*stop, first, end) + pace_.mean() * static_cast<double>(frame - stop->came);
-    } else {
-      at = end + 1.0 -
-           pace_.mean() * (static_cast<double>(*stop->left) - static_cast<double>(frame));
-    }
+    const auto now = static_cast<double>(frame);
+    const bool counts_back = stop->left && !stop->seen_to_come;
+    const double at =
+        counts_back
+            ? end + 1.0 - pace_.mean() * (static_cast<double>(*stop->left) - now)
+            : comes(*stop, first, end) + pace_.mean() * (now - static_cast<double>(stop->came));
     // On its way from there it may be beyond it, unless it hardly moves and the map's stop is
     // nearly over.
     constexpr double nearly = 20.0;
