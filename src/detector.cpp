@@ -11,6 +11,7 @@
 #include "seqloop/detail/lowest_lines.hpp"
 #include "seqloop/detail/portable_math.hpp"
 #include "seqloop/detail/sketch.hpp"
+#include "seqloop/detail/stop_run.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -68,7 +69,7 @@ std::optional<double> spacing_of(const PlaceMap& map) {
 /// Steps whose frames are asked for: those that wait, and the newest that are no candidates yet.
 std::size_t steps_kept(const MatcherConfig& config) {
   return std::max(config.patience, config.exclude) + 2 * config.sequence_length +
-         config.frames_at_once + PlaceMap::most_looks + 2;
+         config.frames_at_once + StopRun::reach + 2;
 }
 
 /// Frames whose steps are asked for: those that wait, and as many as may be skipped at once.
@@ -93,7 +94,7 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
 }
 
 // As much is told at most of a frame that shows what an unsettled one did.
-constexpr float in_doubt = 0.95F;
+constexpr auto in_doubt = static_cast<float>(PendingAnswers::most_in_doubt);
 
 }  // namespace
 

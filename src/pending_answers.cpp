@@ -24,9 +24,6 @@ constexpr std::size_t own = 6;
 // was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
 
-// As much is told at most where only that is in doubt on which side of a jump a frame lies.
-constexpr double most_in_doubt = 0.95;
-
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
 /// section 6.6.

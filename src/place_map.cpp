@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "seqloop/detail/stop_run.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -193,22 +194,14 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
 std::optional<CandidateRun> PlaceMap::stop_at(std::size_t row) const noexcept {
   if (stood_.empty() || row >= size()) return std::nullopt;
   const CandidateRun session = order_.around(row);
-  const auto stands = [&](std::size_t at, std::uint64_t frames) {
-    return at >= session.first && at < session.last && stood(at) >= frames;
-  };
-  const auto stands_long = [&](std::size_t at) { return stands(at, stop_frames); };
-  std::size_t off = 0;
-  while (off <= beside_stops && !stands_long(row + off) && !stands_long(row - off)) ++off;
-  if (off > beside_stops) return std::nullopt;
-  std::size_t first = stands_long(row + off) ? row + off : row - off;
-  std::size_t last = first;
-  for (std::size_t at = last + 1; at <= row + most_looks && at - last <= between_stops; ++at) {
-    if (stands(at, 1)) last = at;
-  }
-  for (std::size_t at = first; at-- > 0 && at + most_looks >= row && first - at <= between_stops;) {
-    if (stands(at, 1)) first = at;
-  }
-  return CandidateRun{first, last + 1};
+  const std::uint64_t begin = row - std::min<std::uint64_t>(row, StopRun::reach);
+  const auto run =
+      StopRun::around(row, std::max<std::uint64_t>(session.first, begin),
+                      std::min<std::uint64_t>(session.last, row + StopRun::reach + 1),
+                      [this](std::uint64_t one) { return stood(static_cast<std::size_t>(one)); });
+  if (!run) return std::nullopt;
+  return CandidateRun{static_cast<std::size_t>(run->first),
+                      static_cast<std::size_t>(run->last) + 1};
 }
 
 PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,

@@ -155,15 +155,9 @@ class PlaceMap {
     return stood_.empty() ? 0 : stood_[order_.slot(row)];
   }
 
-  /// The stop that a place is part of, or at most `beside_stops` rows from: rows at which the robot
-  /// stood for `stop_frames` or more, with `between_stops - 1` in a row at most that looked new
-  /// nevertheless.
-  /// Work: `most_looks` rows at most, either way. Allocates: never.
+  /// The `StopRun` of places that one is part of, or is beside.
+  /// Work: `StopRun::around`. Allocates: never.
   [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row) const noexcept;
-  static constexpr std::size_t stop_frames = 4;
-  static constexpr std::size_t between_stops = 2;
-  static constexpr std::size_t beside_stops = 3;
-  static constexpr std::size_t most_looks = 10;
 
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
   [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept {

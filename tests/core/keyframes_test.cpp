@@ -56,6 +56,17 @@ double variance_of(const Vectors& drive) {
   return sum;
 }
 
+/// What steps are remembered in.
+struct Memory {
+  ArenaMemory memory{1 << 12, {}};
+
+  /// @param steps, frames that are remembered
+  [[nodiscard]] FrameSteps steps(std::size_t steps, std::size_t frames) const {
+    Arena arena(memory.span());
+    return {arena, steps, frames};
+  }
+};
+
 TEST(Keyframes, AreAllFramesWhereEachShowsSomethingNew) {
   const Vectors drive = test::way(1, 300, 0.3F, 1);
   EXPECT_EQ(std::ranges::count(keyframes_of(drive, variance_of(drive)), true), 300);
@@ -88,9 +99,8 @@ TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
 }
 
 TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
-  ArenaMemory memory(1 << 12, {});
-  Arena arena(memory.span());
-  FrameSteps steps(arena, 0, 0);
+  const Memory memory;
+  FrameSteps steps = memory.steps(0, 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
     steps.take(true, something_new);
     EXPECT_EQ(steps.frame_of(frame), frame);
@@ -99,9 +109,8 @@ TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
 }
 
 TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
-  ArenaMemory memory(1 << 12, {});
-  Arena arena(memory.span());
-  FrameSteps steps(arena, 8, 16);
+  const Memory memory;
+  FrameSteps steps = memory.steps(8, 16);
   steps.take(true, something_new);   // frame 0
   steps.repeat();                    // 1
   steps.skip(2, 0);                  // 2, 3
@@ -127,9 +136,8 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
 }
 
 TEST(FrameSteps, MakeOneStopOfTwoWithAFrameBetween) {
-  ArenaMemory memory(1 << 12, {});
-  Arena arena(memory.span());
-  FrameSteps steps(arena, 32, 64);
+  const Memory memory;
+  FrameSteps steps = memory.steps(32, 64);
   // Steps of so many frames: 0 to 4 one each, 5 to 9, 10, 11 and 12, 13 to 17 one each.
   for (const std::size_t frames :
        std::array<std::size_t, 13>{1, 1, 1, 1, 1, 5, 1, 2, 1, 1, 1, 1, 1}) {
@@ -149,9 +157,8 @@ TEST(FrameSteps, MakeOneStopOfTwoWithAFrameBetween) {
 }
 
 TEST(FrameSteps, AreNoStopsWhereFramesComeTwice) {
-  ArenaMemory memory(1 << 12, {});
-  Arena arena(memory.span());
-  FrameSteps steps(arena, 32, 64);
+  const Memory memory;
+  FrameSteps steps = memory.steps(32, 64);
   for (std::size_t step = 0; step < 20; ++step) {
     steps.take(true, something_new);
     steps.repeat();
@@ -160,9 +167,8 @@ TEST(FrameSteps, AreNoStopsWhereFramesComeTwice) {
 }
 
 TEST(FrameSteps, AreIsolatedBetweenTwoCuts) {
-  ArenaMemory memory(1 << 12, {});
-  Arena arena(memory.span());
-  FrameSteps steps(arena, 16, 32);
+  const Memory memory;
+  FrameSteps steps = memory.steps(16, 32);
   for (const FrameSteps::Shows shows :
        {something_new, another_scene, another_scene, something_new, another_scene}) {
     steps.take(true, shows);

@@ -33,6 +33,9 @@ class PendingAnswers {
   /// Lines that are kept of a frame.
   static constexpr std::size_t lines_kept = 4;
 
+  /// As much is told at most where only that is in doubt on which side of a jump a frame lies.
+  static constexpr double most_in_doubt = 0.95;
+
   /// Allocates: from the arena only.
   PendingAnswers(Arena& arena, const MatcherConfig& config, const Trajectories& trajectories);
 
