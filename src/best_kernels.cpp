@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <span>
 
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 
 namespace seqloop {
@@ -19,6 +19,6 @@ const Kernels& first_supported(std::span<const Kernels* const> variants) noexcep
 
 const IntegerKernels& best_integer_kernels() noexcept { return first_supported(integer_kernels()); }
 
-const FloatColumn& best_float_column() noexcept { return first_supported(float_columns()); }
+const FloatKernels& best_float_kernels() noexcept { return first_supported(float_kernels()); }
 
 }  // namespace seqloop

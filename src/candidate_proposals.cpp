@@ -45,20 +45,26 @@ std::size_t rows_a_scan(const MatcherConfig& config, std::size_t places) {
   return std::min(config.relocalising.rows_scanned, places);
 }
 
+/// Where all rows are candidates, there is nothing to propose.
+bool proposes(const MatcherConfig& config) {
+  return scans(config) && config.candidates != Candidates::all;
+}
+
 }  // namespace
 
 CandidateProposals::CandidateProposals(Arena& arena, const MatcherConfig& config,
                                        std::size_t places)
     : ds_(config.sequence_length),
       rows_a_scan_(rows_a_scan(config, places)),
-      near_(config.num / 2) {
+      near_(config.num / 2),
+      proposes_(proposes(config)) {
   const bool used = scans(config);
-  remembered_ = arena.take<Alike>("rows that look alike", used ? most : 0);
-  proposals_ = arena.take<Proposal>("proposed lines", used ? most : 0);
+  remembered_ = arena.take<Alike>("rows that look alike", proposes_ ? most : 0);
+  proposals_ = arena.take<Proposal>("proposed lines", proposes_ ? most : 0);
   best_ = arena.take<Alike>("best rows of a scan", used ? looked_at_closely : 0);
   bits_ = arena.take<std::uint32_t>("differing bits of a scan", used ? rows_a_scan_ : 0);
-  behind_ = arena.take<std::uint32_t>("lines tried", used ? lines_tried * (ds_ + 1) : 0);
-  if (!used || arena.measuring()) return;
+  behind_ = arena.take<std::uint32_t>("lines tried", proposes_ ? lines_tried * (ds_ + 1) : 0);
+  if (!proposes_ || arena.measuring()) return;
   for (std::size_t line = 0; line < lines_tried; ++line) {
     const double velocity = config.vmin + (config.vmax - config.vmin) * static_cast<double>(line) /
                                               static_cast<double>(lines_tried - 1);
@@ -72,6 +78,7 @@ CandidateProposals::CandidateProposals(Arena& arena, const MatcherConfig& config
 
 CandidateProposals::Looks CandidateProposals::most_looks(const MatcherConfig& config,
                                                          std::size_t places) noexcept {
+  if (!proposes(config)) return {rows_a_scan(config, places), 0};
   return {
       rows_a_scan(config, places),
       (most + looked_at_closely) * (2 * slack + 1) * frames_looked_at +
@@ -94,6 +101,7 @@ CandidateProposals::Looks CandidateProposals::look(const QueryHistory& queries, 
     if (map.order().apart(row, row + 1) == 1) look_closely(queries, map, rows, row + 1);
   }
   const std::span<const Alike> found = best_of_scan(queries, map, rows);
+  if (!proposes_) return {scanned_, 0};
   for (const Alike& best : found) prefetch(map, rows, best.row);
   for (const Alike& best : found) {
     look_closely(queries, map, rows, best.row);

@@ -104,7 +104,7 @@ DescriptorRows::DescriptorRows(Arena& arena, const RowNames& names, const Descri
                                std::size_t rows)
     : form_(form),
       kernels_(&best_integer_kernels()),
-      float_column_(&best_float_column()),
+      float_kernels_(&best_float_kernels()),
       stride_(stride_of(form)),
       words_(words_of(form)),
       exact_(arena.take<float>(names.values, form.arithmetic == Arithmetic::float32
@@ -143,7 +143,7 @@ void DescriptorRows::store(std::size_t row, std::span<const float> descriptor) n
 
 void DescriptorRows::measure(std::size_t row) noexcept {
   if (lengths_.empty()) return;
-  float_column_->dots(exact(row).data(), exact(row).data(), stride_, 1, &lengths_[row]);
+  float_kernels_->dots(exact(row).data(), exact(row).data(), stride_, 1, &lengths_[row]);
 }
 
 void DescriptorRows::sketch_row(std::size_t row, std::span<const std::int8_t> bytes) noexcept {
@@ -278,8 +278,8 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query, s
   }
   std::array<double, abreast> dots;
   in_pieces(out.size(), abreast, [&](std::size_t begin, std::size_t count) {
-    float_column_->dots(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
-                        dots.data());
+    float_kernels_->dots(queries.exact(query).data(), exact(first + begin).data(), stride_, count,
+                         dots.data());
     distances(dots, queries.lengths_[query], first + begin, out.subspan(begin, count));
   });
 }
@@ -310,9 +310,9 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
                              std::span<const std::span<float>> out) const noexcept {
   std::array<double, MatcherConfig::most_frames_at_once * block_abreast> dots;
   in_blocks(queries.lengths_.size(), query, out, [&](const auto& block) {
-    float_column_->dots_block(queries.exact(block.query).data(), block.columns.size(),
-                              exact(block.row).data(), stride_, block.count, dots.data(),
-                              block_abreast);
+    float_kernels_->dots_block(queries.exact(block.query).data(), block.columns.size(),
+                               exact(block.row).data(), stride_, block.count, dots.data(),
+                               block_abreast);
     for (std::size_t q = 0; q < block.columns.size(); ++q) {
       distances(std::span(dots).subspan(q * block_abreast), queries.lengths_[block.query + q],
                 block.row, block.columns[q].subspan(block.row, block.count));

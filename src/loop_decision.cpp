@@ -15,18 +15,16 @@ struct Lowest {
   std::size_t scored = 0;
 };
 
-/// The lowest score of the candidates that `counts` lets in.
-template <class Counts>
-Lowest lowest(std::span<const double> scores, std::span<const CandidateRun> runs, Counts counts) {
-  Lowest found;
-  for (const CandidateRun run : runs) {
-    for (std::size_t row = run.first; row < run.last; ++row) {
-      if (scores[row] == no_score || !counts(row)) continue;
-      ++found.scored;
-      if (scores[row] < found.score) found = {row, scores[row], found.scored};
+/// Goes on with the rows of a run that were scored.
+void look_at(std::span<const double> scores, CandidateRun run, Lowest& found) {
+  for (std::size_t row = run.first; row < run.last; ++row) {
+    if (scores[row] == no_score) continue;
+    ++found.scored;
+    if (scores[row] < found.score) {
+      found.score = scores[row];
+      found.row = row;
     }
   }
-  return found;
 }
 
 }  // namespace
@@ -36,23 +34,28 @@ std::optional<BestRow> LoopDecision::decide(const PlaceOrder& order, std::span<c
                                             std::span<const CandidateProposals::Proposal> proposals,
                                             std::size_t rows) noexcept {
   past_.next();
-  const Lowest best = lowest(scores, runs, [](std::size_t) { return true; });
+  Lowest best;
+  for (const CandidateRun run : runs) look_at(scores, run, best);
   if (best.scored == 0) return std::nullopt;
   // Other sessions may know the same place: the row stands out within its own.
   const CandidateRun session = order.around(best.row);
-  const auto outside = [&](std::size_t row) {
-    return (row + half_rwindow_ < best.row || row > best.row + half_rwindow_) &&
-           session.first <= row && row < session.last;
-  };
-  Lowest runner_up = lowest(scores, runs, outside);
+  const std::size_t before = best.row - std::min(best.row, half_rwindow_);
+  const std::size_t behind = best.row + half_rwindow_ + 1;
+  Lowest runner_up;
+  for (const CandidateRun run : runs) {
+    look_at(scores, {std::max(run.first, session.first), std::min(run.last, before)}, runner_up);
+    look_at(scores, {std::max(run.first, behind), std::min(run.last, session.last)}, runner_up);
+  }
   for (const CandidateProposals::Proposal& proposal : proposals) {
-    const bool scored = std::ranges::any_of(runs, [&](CandidateRun run) {
-      return run.first <= proposal.centre && proposal.centre < run.last;
-    });
-    if (scored || !outside(proposal.centre)) continue;
+    const std::size_t row = proposal.centre;
+    const bool scored = std::ranges::any_of(
+        runs, [&](CandidateRun run) { return run.first <= row && row < run.last; });
+    const bool outside =
+        session.first <= row && row < session.last && (row < before || behind <= row);
+    if (scored || !outside) continue;
     ++runner_up.scored;
     if (proposal.difference >= runner_up.score) continue;
-    runner_up.row = proposal.centre;
+    runner_up.row = row;
     runner_up.score = proposal.difference;
   }
   const std::optional<double> past = past_.lowest(best.row, half_rwindow_, rows, session);

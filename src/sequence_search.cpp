@@ -2,10 +2,8 @@
 #include "seqloop/detail/sequence_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <limits>
-#include <type_traits>
 
 namespace seqloop {
 namespace {
@@ -53,6 +51,7 @@ SequenceSearch::SequenceSearch(Arena& arena, const Trajectories& trajectories,
                                const MatcherConfig& config, std::size_t places)
     : trajectories_(&trajectories),
       kernels_(&best_integer_kernels()),
+      float_kernels_(&best_float_kernels()),
       scores_(arena.take<double>("scores", places)),
       lines_(arena.take<std::uint32_t>("best lines", places)) {
   const std::size_t ds = config.sequence_length;
@@ -134,7 +133,7 @@ std::size_t SequenceSearch::score_run(const DifferenceSlices& slices, const Plac
   std::size_t line_sums = 0;
   for (std::size_t first = run.first; first < run.last; first += block_rows) {
     const CandidateRun block{first, std::min(first + block_rows, run.last)};
-    add_up(order, block, columns);
+    add_up(order, block, columns, sums);
     line_sums += score_block<Sum>(block, session, scale, sums, lowest);
   }
   return line_sums;
@@ -152,7 +151,7 @@ std::size_t SequenceSearch::score_block(CandidateRun block, CandidateRun session
   std::size_t line_sums = 0;
   if (block.first >= session.first + furthest_below &&
       block.last + furthest_above <= session.last) {
-    lowest_of(sums, {0, count}, {0, std::is_integral_v<Sum> ? whole_vectors(size) : size}, lowest);
+    keep_lowest(sums, {0, count}, {0, whole_vectors(size)}, lowest);
     line_sums = count * size;
   } else {
     for (std::size_t line = 0; line < count; ++line) {
@@ -163,7 +162,7 @@ std::size_t SequenceSearch::score_block(CandidateRun block, CandidateRun session
       const std::size_t first = std::max(block.first, session.first + below);
       const std::size_t last = std::min(block.last, session.last - above);
       if (first >= last) continue;
-      lowest_of(sums, {line, line + 1}, {first - block.first, last - block.first}, lowest);
+      keep_lowest(sums, {line, line + 1}, {first - block.first, last - block.first}, lowest);
       line_sums += last - first;
     }
   }
@@ -180,9 +179,9 @@ std::size_t SequenceSearch::score_block(CandidateRun block, CandidateRun session
 /// first whole ones; then, before each column but the first, what each has more than the next.
 /// Differences that were not computed, or lie beyond the map's ends, are added too and taken off
 /// again by each line, which does not touch them.
-template <class Value>
-void SequenceSearch::add_up(const PlaceOrder& order, CandidateRun block,
-                            Columns<Value>& columns) noexcept {
+template <class Value, class Sum>
+void SequenceSearch::add_up(const PlaceOrder& order, CandidateRun block, Columns<Value>& columns,
+                            std::span<Sum> sums) noexcept {
   const std::size_t diagonals = whole_vectors(block.last - block.first + around_);
   for (std::size_t i = 0; i < trajectories_->window(); ++i) {
     // The row at this column of the block's first diagonal.
@@ -201,68 +200,17 @@ void SequenceSearch::add_up(const PlaceOrder& order, CandidateRun block,
     }
     columns.values[i] = in_order;
   }
-  sum_diagonals(columns.values, diagonals);
+  kernels(Sum{}).sum_diagonals(columns.values.data(), columns.values.size(), diagonals, stride_,
+                               sums.data());
 }
 
-void SequenceSearch::sum_diagonals(std::span<const float* const> values,
-                                   std::size_t count) noexcept {
-  double* const sums = sums_.data();
-  std::fill_n(sums, count, 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const float* const column = values[i];
-    if (i == 1) std::fill_n(sums + stride_, count, 0.0);
-    double* const apart = sums + i * stride_;
-    if (i > 0) {
-      const double* const before = i == 1 ? apart : apart - stride_;
-      const float* const last = values[i - 1];
-      for (std::size_t d = 0; d < count; ++d) {
-        apart[d] = before[d] + (static_cast<double>(last[d]) - static_cast<double>(last[d + 1]));
-      }
-    }
-    for (std::size_t d = 0; d < count; ++d) sums[d] += static_cast<double>(column[d]);
-  }
-}
-
-void SequenceSearch::sum_diagonals(std::span<const std::uint16_t* const> values,
-                                   std::size_t count) noexcept {
-  kernels_->sum_diagonals(values.data(), values.size(), count, stride_, whole_sums_.data());
-}
-
-void SequenceSearch::lowest_of(std::span<const double> sums, LineRun lines, CandidateRun part,
-                               std::span<double> lowest) noexcept {
-  constexpr std::size_t abreast = 8;
-  for (std::size_t line = lines.first; line < lines.last; ++line) {
-    std::size_t row = part.first;
-    for (; row + abreast <= part.last; row += abreast) {
-      keep_lower<abreast>(sums, line, row, lowest);
-    }
-    for (; row < part.last; ++row) keep_lower<1>(sums, line, row, lowest);
-  }
-}
-
-template <std::size_t abreast>
-void SequenceSearch::keep_lower(std::span<const double> sums, std::size_t line, std::size_t first,
-                                std::span<double> lowest) noexcept {
-  const LineThroughSums& through = through_[line];
-  std::array<double, abreast> apart{};
-  for (std::uint32_t c = through.first_change; c < through.last_change; ++c) {
-    const double* const change = &sums[changes_[c] + first];
-    for (std::size_t i = 0; i < abreast; ++i) apart[i] += change[i];
-  }
-  for (std::size_t i = 0; i < abreast; ++i) {
-    const double whole = sums[through.end + first + i];
-    const double sum = through.rises ? whole + apart[i] : whole - apart[i];
-    if (sum >= lowest[first + i]) continue;
-    lowest[first + i] = sum;
-    block_lines_[first + i] = static_cast<std::uint32_t>(line);
-  }
-}
-
-void SequenceSearch::lowest_of(std::span<const std::uint32_t> sums, LineRun lines,
-                               CandidateRun part, std::span<std::uint32_t> lowest) noexcept {
-  kernels_->lowest_lines(&sums[part.first], changes_.data(), &through_[lines.first],
-                         lines.last - lines.first, static_cast<std::uint32_t>(lines.first),
-                         part.last - part.first, &lowest[part.first], &block_lines_[part.first]);
+template <class Sum>
+void SequenceSearch::keep_lowest(std::span<const Sum> sums, LineRun lines, CandidateRun part,
+                                 std::span<Sum> lowest) noexcept {
+  kernels(Sum{}).lowest_lines(&sums[part.first], changes_.data(), &through_[lines.first],
+                              lines.last - lines.first, static_cast<std::uint32_t>(lines.first),
+                              part.last - part.first, &lowest[part.first],
+                              &block_lines_[part.first]);
 }
 
 }  // namespace seqloop

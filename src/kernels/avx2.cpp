@@ -94,8 +94,12 @@ void sketch_together_avx2(const std::uint8_t* both, const std::uint32_t* chosen,
 constinit const IntegerKernels avx2 = composed_of<Products, HighwayDifferences, HighwayLanes>(
     "avx2", &has_avx2, &sketch_together_avx2);
 
-constinit const FloatColumn float_avx2{
-    "avx2", &has_avx2, &dots,
-    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, dot_lanes>, 3, 4>};
+constinit const FloatKernels float_avx2{
+    "avx2",
+    &has_avx2,
+    &dots,
+    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, dot_lanes>, 3, 4>,
+    &sum_diagonals<HighwayDoubles>,
+    &lowest_lines<HighwayDoubles>};
 
 }  // namespace seqloop::kernels

@@ -38,8 +38,12 @@ constinit const IntegerKernels avx512 =
     composed_of<HighwayProducts, HighwayDifferences, HighwayLanes>("avx512", &has_avx512,
                                                                    &sketch_together_avx512);
 
-constinit const FloatColumn float_avx512{
-    "avx512", &has_avx512, &dots,
-    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 2 * dot_lanes>, 4, 4>};
+constinit const FloatKernels float_avx512{
+    "avx512",
+    &has_avx512,
+    &dots,
+    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 2 * dot_lanes>, 4, 4>,
+    &sum_diagonals<HighwayDoubles>,
+    &lowest_lines<HighwayDoubles>};
 
 }  // namespace seqloop::kernels

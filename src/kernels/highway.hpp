@@ -115,27 +115,56 @@ struct HighwayDifferences {
   }
 };
 
-struct HighwayLanes {
-  using Tag = hn::ScalableTag<std::uint32_t>;
+/// What both kinds of lanes have alike.
+template <class Value_, class Number_>
+struct HighwayNumbers {
+  using Value = Value_;
+  using Number = Number_;
+  using Tag = hn::ScalableTag<Number>;
   using Sum = hn::Vec<Tag>;
   static constexpr std::size_t count = hn::MaxLanes(Tag());
 
-  static Sum load(const std::uint32_t* from) noexcept { return hn::LoadU(Tag(), from); }
-  static void store(Sum sum, std::uint32_t* to) noexcept { hn::StoreU(sum, Tag(), to); }
-  static Sum number(std::uint32_t line) noexcept { return hn::Set(Tag(), line); }
+  static Sum load(const Number* from) noexcept { return hn::LoadU(Tag(), from); }
+  static void store(Sum sum, Number* to) noexcept { hn::StoreU(sum, Tag(), to); }
+  static Sum widen(const Value* values) noexcept {
+    return hn::PromoteTo(Tag(), hn::LoadU(hn::Rebind<Value, Tag>(), values));
+  }
+  static Sum number(std::uint32_t line) noexcept {
+    return hn::Set(Tag(), static_cast<Number>(line));
+  }
   static Sum add(Sum a, Sum b) noexcept { return hn::Add(a, b); }
   static Sum take_off(Sum a, Sum b) noexcept { return hn::Sub(a, b); }
+};
 
-  static Sum widen(const std::uint16_t* values) noexcept {
-    const hn::Rebind<std::uint16_t, Tag> narrow;
-    return hn::PromoteTo(Tag(), hn::LoadU(narrow, values));
-  }
+struct HighwayLanes : HighwayNumbers<std::uint16_t, std::uint32_t> {
+  static Sum load_lines(const std::uint32_t* from) noexcept { return load(from); }
+  static void store_lines(Sum lines, std::uint32_t* to) noexcept { store(lines, to); }
 
   static void keep_lower(Sum sum, Sum line, Sum& best, Sum& best_line) noexcept {
     best_line = hn::IfThenElse(hn::Lt(sum, best), line, best_line);
     best = hn::Min(sum, best);
   }
 };
+
+#if HWY_HAVE_FLOAT64
+struct HighwayDoubles : HighwayNumbers<float, double> {
+  using Lines = hn::Rebind<std::int32_t, Tag>;
+  static Sum load_lines(const std::uint32_t* from) noexcept {
+    return hn::PromoteTo(Tag(),
+                         hn::BitCast(Lines(), hn::LoadU(hn::RebindToUnsigned<Lines>(), from)));
+  }
+  static void store_lines(Sum lines, std::uint32_t* to) noexcept {
+    const hn::RebindToUnsigned<Lines> narrow;
+    hn::StoreU(hn::BitCast(narrow, hn::DemoteTo(Lines(), lines)), narrow, to);
+  }
+
+  static void keep_lower(Sum sum, Sum line, Sum& best, Sum& best_line) noexcept {
+    const auto lower = hn::Lt(sum, best);
+    best_line = hn::IfThenElse(lower, line, best_line);
+    best = hn::IfThenElse(lower, sum, best);
+  }
+};
+#endif
 
 }  // namespace
 }  // namespace seqloop::kernels

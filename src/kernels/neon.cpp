@@ -71,8 +71,13 @@ constinit const IntegerKernels neon = composed_of<Products, HighwayDifferences, 
     "neon", &has_neon, &sketch_together_neon);
 
 #ifdef __aarch64__  // 32-bit ARM: float_vfpv4.cpp
-constinit const FloatColumn float_neon{
-    "neon", &has_neon, &dots, &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 4>, 4, 4>};
+constinit const FloatKernels float_neon{
+    "neon",
+    &has_neon,
+    &dots,
+    &dots_of_block<hwy::HWY_NAMESPACE::CappedTag<float, 4>, 4, 4>,
+    &sum_diagonals<HighwayDoubles>,
+    &lowest_lines<HighwayDoubles>};
 #endif
 
 }  // namespace seqloop::kernels

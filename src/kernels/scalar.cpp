@@ -53,6 +53,7 @@ bool always() noexcept { return true; }
 }  // namespace
 
 constinit const IntegerKernels scalar =
-    composed_of<Products, Differences, OneLane<Products>>("scalar", &always, &sketch_together);
+    composed_of<Products, Differences, OneLane<Products, std::uint16_t, std::uint32_t>>(
+        "scalar", &always, &sketch_together);
 
 }  // namespace seqloop::kernels

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 
 // Everything that some processor's build may have. Which of it is compiled, CMakeLists.txt says;
@@ -21,11 +21,11 @@ extern const IntegerKernels neon_dot;
 extern const IntegerKernels neon;
 extern const IntegerKernels scalar;
 
-extern const FloatColumn float_avx512;
-extern const FloatColumn float_avx2;
-extern const FloatColumn float_neon;
-extern const FloatColumn float_vfpv4;
-extern const FloatColumn float_plain;
+extern const FloatKernels float_avx512;
+extern const FloatKernels float_avx2;
+extern const FloatKernels float_neon;
+extern const FloatKernels float_vfpv4;
+extern const FloatKernels float_plain;
 
 // What a variant shares with one that has fewer instructions. Not compiled again: the linker could
 // take the copy with more of them for both.

@@ -22,7 +22,7 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
   return variants;
 }
 
-std::span<const FloatColumn* const> float_columns() noexcept {
+std::span<const FloatKernels* const> float_kernels() noexcept {
   static constexpr std::array variants{&kernels::float_neon, &kernels::float_plain};
   return variants;
 }

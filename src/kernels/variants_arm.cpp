@@ -20,7 +20,7 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
   return variants;
 }
 
-std::span<const FloatColumn* const> float_columns() noexcept {
+std::span<const FloatKernels* const> float_kernels() noexcept {
   static constexpr std::array variants{&kernels::float_vfpv4, &kernels::float_plain};
   return variants;
 }

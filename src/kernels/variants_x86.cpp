@@ -52,7 +52,7 @@ std::span<const IntegerKernels* const> integer_kernels() noexcept {
   return variants;
 }
 
-std::span<const FloatColumn* const> float_columns() noexcept {
+std::span<const FloatKernels* const> float_kernels() noexcept {
   static constexpr std::array variants{&kernels::float_avx512, &kernels::float_avx2,
                                        &kernels::float_plain};
   return variants;

@@ -6,15 +6,16 @@
 
 #include <bit>
 #include <cstring>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "guarded_bytes.hpp"
+#include "core/guarded.hpp"
 
 namespace seqloop {
 namespace {
+
+using test::Guarded;
 
 using Bytes = std::vector<std::int8_t>;
 using Words = std::vector<std::uint64_t>;
@@ -48,23 +49,6 @@ Words random_words(std::mt19937_64& random, std::size_t size) {
   for (std::uint64_t& word : words) word = random();
   return words;
 }
-
-/// Memory that ends with the values: a value too far ends the program.
-template <class Value>
-class Guarded {
- public:
-  explicit Guarded(const std::vector<Value>& values) : memory_(values.size() * sizeof(Value)) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
-    held_ = memory_.hold({bytes, values.size() * sizeof(Value)}).data();
-  }
-  [[nodiscard]] const Value* data() const {
-    return static_cast<const Value*>(static_cast<const void*>(held_));
-  }
-
- private:
-  test::GuardedBytes memory_;
-  const std::uint8_t* held_;
-};
 
 class Variant : public testing::TestWithParam<const IntegerKernels*> {
  protected:
@@ -256,116 +240,6 @@ TEST_P(Variant, HammingColumnEqualsTheDefinitionForEveryShapeAndReadsNothingElse
       }
       EXPECT_EQ(bits[count], 77U) << "nothing is written behind";
     }
-  }
-}
-
-TEST_P(Variant, SumDiagonalsEqualsTheDefinitionForEveryShapeAndReadsNothingElse) {
-  std::mt19937 random(17);
-  for (const std::size_t window : {1U, 2U, 21U}) {
-    for (const std::size_t count : {0U, 1U, 3U, 4U, 7U, 8U, 15U, 16U, 17U, 31U, 33U, 148U}) {
-      const std::size_t stride = count + window % 3;
-      std::vector<std::unique_ptr<Guarded<std::uint16_t>>> columns;
-      std::vector<const std::uint16_t*> values;
-      for (std::size_t i = 0; i < window; ++i) {
-        std::vector<std::uint16_t> column(count + 1);
-        for (auto& value : column) value = static_cast<std::uint16_t>(random());
-        values.push_back(
-            columns.emplace_back(std::make_unique<Guarded<std::uint16_t>>(column))->data());
-      }
-      std::vector<std::uint32_t> sums(window * stride + 1, 77U);
-      std::vector<std::uint32_t> right = sums;
-      for (std::size_t j = 0; j < count; ++j) {
-        std::uint32_t apart = 0;
-        std::uint32_t whole = 0;
-        for (std::size_t i = 0; i < window; ++i) {
-          right[i * stride + j] = apart;
-          apart += static_cast<std::uint32_t>(values[i][j] - values[i][j + 1]);
-          whole += values[i][j];
-        }
-        right[j] = whole;
-      }
-      kernels_.sum_diagonals(values.data(), window, count, stride, sums.data());
-      EXPECT_EQ(sums, right) << window << ' ' << count;
-    }
-  }
-}
-
-/// What `lowest_lines` starts from and ends with.
-struct Lowest {
-  std::vector<std::uint32_t> best;
-  std::vector<std::uint32_t> lines;
-  bool operator==(const Lowest&) const = default;
-};
-
-/// Lines of every count of changes, up and down, as far as the sums reach.
-struct SyntheticLines {
-  static constexpr std::uint32_t furthest = 40;
-  std::vector<LineThroughSums> lines;
-  std::vector<std::uint32_t> changes;
-
-  explicit SyntheticLines(std::mt19937& random) {
-    std::uniform_int_distribution<std::uint32_t> offsets(0, furthest);
-    for (const std::uint32_t count : {0U, 1U, 2U, 21U, 0U, 5U}) {
-      const auto first = static_cast<std::uint32_t>(changes.size());
-      for (std::uint32_t c = 0; c < count; ++c) changes.push_back(offsets(random));
-      lines.push_back({offsets(random), first, first + count, lines.size() % 2 == 0});
-    }
-    lines[1].end = furthest;
-    changes.back() = furthest;
-  }
-};
-
-void keep_lower(const std::vector<std::uint32_t>& sums, const SyntheticLines& synthetic,
-                std::uint32_t number, Lowest& lowest) {
-  for (const LineThroughSums& line : synthetic.lines) {
-    for (std::size_t column = 0; column + 1 < lowest.best.size(); ++column) {
-      std::uint32_t sum = sums[line.end + column];
-      for (std::uint32_t c = line.first_change; c < line.last_change; ++c) {
-        const std::uint32_t apart = sums[synthetic.changes[c] + column];
-        sum = line.rises ? sum + apart : sum - apart;
-      }
-      if (sum >= lowest.best[column]) continue;
-      lowest.best[column] = sum;
-      lowest.lines[column] = number;
-    }
-    ++number;
-  }
-}
-
-TEST_P(Variant, LowestLinesEqualTheDefinitionForEveryCountAndReadNothingElse) {
-  std::mt19937 random(9);
-  for (std::size_t count = 0; count < 150; ++count) {
-    // Sums that wrap around, and ties.
-    std::uniform_int_distribution<std::uint32_t> values(0, count % 2 == 0 ? 3U : 0xFFFFFFFFU);
-    std::vector<std::uint32_t> sums(count + SyntheticLines::furthest);
-    for (std::uint32_t& sum : sums) sum = 0xFFFFFFFEU + values(random);
-    Lowest right{std::vector<std::uint32_t>(count + 1, 0xFFFFFFFFU),
-                 std::vector<std::uint32_t>(count + 1, 99)};
-    Lowest kept = right;
-    const Guarded guarded(sums);
-    for (std::uint32_t go = 0; go < 3; ++go) {
-      const SyntheticLines synthetic(random);
-      keep_lower(sums, synthetic, 10 * go, right);
-      kernels_.lowest_lines(guarded.data(), synthetic.changes.data(), synthetic.lines.data(),
-                            synthetic.lines.size(), 10 * go, count, kept.best.data(),
-                            kept.lines.data());
-      ASSERT_EQ(kept, right) << count << ' ' << go;
-    }
-    EXPECT_EQ(kept.lines.back(), 99U) << "nothing is written behind";
-  }
-}
-
-TEST_P(Variant, LowestLinesCompareWithoutASign) {
-  for (const std::size_t count : {1U, 9U, 200U}) {
-    const std::vector<std::uint32_t> sums(count, 0);
-    std::vector<std::uint32_t> high(count, 0x80000001U);
-    std::vector<std::uint32_t> lines(count, 5);
-    const LineThroughSums nothing{0, 0, 0, true};
-    kernels_.lowest_lines(sums.data(), nullptr, &nothing, 1, 6, count, high.data(), lines.data());
-    EXPECT_EQ(high, std::vector<std::uint32_t>(count, 0)) << count;
-    EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << count;
-    kernels_.lowest_lines(sums.data(), nullptr, &nothing, 1, 7, count, high.data(), lines.data());
-    EXPECT_EQ(lines, std::vector<std::uint32_t>(count, 6)) << "of equal sums the first stays";
   }
 }
 

@@ -14,7 +14,7 @@
 
 #include "core/matcher.hpp"
 #include "seqloop/detail/contrast.hpp"
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -88,7 +88,7 @@ void expect_same(double dot, double expected, const std::string& what) {
   }
 }
 
-TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
+TEST(FloatKernels, FuseAlsoWhereTheProcessorCannot) {
   std::mt19937 random(16);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
   constexpr std::size_t size = 528;
@@ -111,7 +111,7 @@ TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
         for (std::size_t i = 0; i < size; ++i) {
           rows[2 * size + i] = i / 8 % 2 == 0 ? query[i] : -query[i - 8];
         }
-        for (const FloatColumn* column : float_columns()) {
+        for (const FloatKernels* column : float_kernels()) {
           if (!column->supported()) continue;
           std::array<double, 4> dots{};
           column->dots(query.data(), rows.data(), size, dots.size(), dots.data());
@@ -126,10 +126,10 @@ TEST(FloatColumns, FuseAlsoWhereTheProcessorCannot) {
   }
 }
 
-TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
+TEST(FloatKernels, AreTheSameBytesOnEveryProcessor) {
   std::mt19937 random(14);
   std::normal_distribution<float> normal;
-  for (const FloatColumn* column : float_columns()) {
+  for (const FloatKernels* column : float_kernels()) {
     if (!column->supported()) continue;
     for (const std::size_t size : {0U, 16U, 48U, 736U, 1024U, 1040U, 9216U}) {
       for (const std::size_t count : {0U, 1U, 3U, 4U, 9U}) {
@@ -149,7 +149,7 @@ TEST(FloatColumns, AreTheSameBytesOnEveryProcessor) {
   }
 }
 
-TEST(FloatColumns, OfSeveralAreThoseOfEach) {
+TEST(FloatKernels, OfSeveralAreThoseOfEach) {
   std::mt19937 random(15);
   std::normal_distribution<float> normal;
   // With products below the smallest normal number, and sums beyond the largest.
@@ -159,7 +159,7 @@ TEST(FloatColumns, OfSeveralAreThoseOfEach) {
     for (float& value : query) value = scale * normal(random);
     for (float& value : rows) value = scale * normal(random);
     const std::size_t stride = count + 2;
-    for (const FloatColumn* column : float_columns()) {
+    for (const FloatKernels* column : float_kernels()) {
       if (!column->supported()) continue;
       std::vector<double> dots(queries * stride, -1.0);
       column->dots_block(query.data(), queries, rows.data(), size, count, dots.data(), stride);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 
 namespace seqloop {
@@ -33,15 +33,15 @@ const IntegerKernels& best_integer_kernels() noexcept {
 
 /// There are fewer of floats: those whose name the wanted one begins with ("avx512" for
 /// "avx512-vnni"), or those in plain C++.
-const FloatColumn& best_float_column() noexcept {
+const FloatKernels& best_float_kernels() noexcept {
   const char* const name = wanted();
-  for (const FloatColumn* column : float_columns()) {
+  for (const FloatKernels* column : float_kernels()) {
     if (column->supported() &&
         (name == nullptr || std::string_view(name).starts_with(column->name))) {
       return *column;
     }
   }
-  return *float_columns().back();
+  return *float_kernels().back();
 }
 
 }  // namespace seqloop

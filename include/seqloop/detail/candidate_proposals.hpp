@@ -32,7 +32,8 @@ class CandidateProposals {
   };
   [[nodiscard]] static Looks most_looks(const MatcherConfig& config, std::size_t places) noexcept;
 
-  /// Looks again at what is remembered, then scans the next rows.
+  /// Looks again at what is remembered, then scans the next rows. Where all rows are candidates it
+  /// only scans.
   /// @param rows   rows of the map that may be searched
   /// @param newest the frame that is looked for
   /// @param oldest the oldest frame that belongs together with the newest
@@ -103,7 +104,8 @@ class CandidateProposals {
 
   std::size_t ds_;
   std::size_t rows_a_scan_;
-  std::size_t near_;        // rows within which only one is remembered
+  std::size_t near_;  // rows within which only one is remembered
+  bool proposes_;
   std::size_t next_ = 0;    // row that the next scan begins at
   std::size_t frames_ = 0;  // newest frames that are looked at now
   std::size_t scanned_ = 0;

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/matcher_config.hpp"
@@ -148,7 +148,7 @@ class DescriptorRows {
 
   DescriptorForm form_;
   const IntegerKernels* kernels_;
-  const FloatColumn* float_column_;
+  const FloatKernels* float_kernels_;
   std::size_t stride_;                // values from row to row
   std::size_t words_;                 // of a sketch
   std::span<float> exact_;            // [rows, stride], float32

@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "seqloop/detail/line_through_sums.hpp"
+
 namespace seqloop {
 
 /// Bytes that a stored row of small values is a whole number of: a cache line. The rest is zero.
@@ -19,16 +21,6 @@ inline constexpr std::size_t stored_line = 64;
 /// Values of a vector up to which no dot product of values -127 .. 127 leaves 32 bits:
 /// 127 * 127 * 2^17 < 2^31.
 inline constexpr std::size_t most_small_values = std::size_t{1} << 17U;
-
-/// A line through sums along diagonals, as offsets into one array: the whole sum of the diagonal
-/// that it ends on; and where it changed from a diagonal to the next one, what the two had apart
-/// there, added where it rises and taken off where it falls.
-struct LineThroughSums {
-  std::uint32_t end;
-  std::uint32_t first_change;  // among the changes of all lines
-  std::uint32_t last_change;   // left out
-  bool rises;
-};
 
 /// Sums over int8 vectors, over bits and along lines, made for one kind of processor. Integers have
 /// no rounding: every variant gives the same numbers to the last bit. Memory may lie anywhere;

@@ -8,6 +8,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/candidate_ranges.hpp"
 #include "seqloop/detail/difference_slices.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detail/place_order.hpp"
 #include "seqloop/detail/trajectories.hpp"
@@ -71,20 +72,23 @@ class SequenceSearch {
   template <class Sum>
   std::size_t score_block(CandidateRun block, CandidateRun session, double scale,
                           std::span<const Sum> sums, std::span<Sum> lowest) noexcept;
-  template <class Value>
-  void add_up(const PlaceOrder& order, CandidateRun block, Columns<Value>& columns) noexcept;
-  void sum_diagonals(std::span<const float* const> values, std::size_t count) noexcept;
-  void sum_diagonals(std::span<const std::uint16_t* const> values, std::size_t count) noexcept;
-  void lowest_of(std::span<const double> sums, LineRun lines, CandidateRun part,
-                 std::span<double> lowest) noexcept;
-  template <std::size_t abreast>
-  void keep_lower(std::span<const double> sums, std::size_t line, std::size_t first,
-                  std::span<double> lowest) noexcept;
-  void lowest_of(std::span<const std::uint32_t> sums, LineRun lines, CandidateRun part,
-                 std::span<std::uint32_t> lowest) noexcept;
+  template <class Value, class Sum>
+  void add_up(const PlaceOrder& order, CandidateRun block, Columns<Value>& columns,
+              std::span<Sum> sums) noexcept;
+  template <class Sum>
+  void keep_lowest(std::span<const Sum> sums, LineRun lines, CandidateRun part,
+                   std::span<Sum> lowest) noexcept;
+
+  [[nodiscard]] const IntegerKernels& kernels(std::uint32_t /*kind*/) const noexcept {
+    return *kernels_;
+  }
+  [[nodiscard]] const FloatKernels& kernels(double /*kind*/) const noexcept {
+    return *float_kernels_;
+  }
 
   const Trajectories* trajectories_;
   const IntegerKernels* kernels_;
+  const FloatKernels* float_kernels_;
   std::size_t below_ = 0;                  // how far below a row's own diagonal its lines can go
   std::size_t around_ = 0;                 // diagonals of a block beside its rows' own
   std::size_t stride_ = 0;                 // diagonals of a block, whole vectors

@@ -11,7 +11,7 @@
 #include "program/process/available_memory.hpp"
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/fixed_distance.hpp"
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detail/quantised.hpp"
 #include "seqloop/detail/sketch.hpp"
@@ -106,8 +106,8 @@ std::vector<Contender> our_columns(Places& places) {
         });
   }
   add("seqloop-float", places.rows.size_bytes(), [&places] {
-    best_float_column().dots(places.query.data(), places.rows.data(), places.query.size(),
-                             places.size.places, places.float_dots.data());
+    best_float_kernels().dots(places.query.data(), places.rows.data(), places.query.size(),
+                              places.size.places, places.float_dots.data());
     std::ranges::transform(places.float_dots, places.floats.begin(),
                            [](double dot) { return euclidean(1.0, 1.0, dot); });
   });

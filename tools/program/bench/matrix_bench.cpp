@@ -8,7 +8,7 @@
 #include "program/process/available_memory.hpp"
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/descriptor_rows.hpp"
-#include "seqloop/detail/float_columns.hpp"
+#include "seqloop/detail/float_kernels.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
@@ -82,7 +82,7 @@ struct Matched {
 /// All dot products of floats: what a product of matrices is compared with.
 void compare_all(const Drive& query, const Drive& reference) {
   constexpr std::size_t abreast = DescriptorRows::block_rows;
-  const FloatColumn& kernels = best_float_column();
+  const FloatKernels& kernels = best_float_kernels();
   const std::size_t stride = query.values().size() / query.frames();
   std::vector<double> dots(frames_at_once * abreast);
   for (std::size_t first = 0; first < query.frames(); first += frames_at_once) {
