@@ -20,12 +20,12 @@ constexpr double small_map = 200.0;
 
 // A robot that is switched on, and has a map of earlier drives, is likelier on it than one that has
 // just left it.
-constexpr double coming_at_first = 0.02;
+constexpr double coming_at_first = 0.1;
 
 // How much the best wrong sums vary at least. A drive through new places has wrong rows in store
 // that do better than those it has met.
 constexpr double least_variance = 1.25;
-constexpr double least_variance_of_new_places = 5.0;
+constexpr double least_variance_of_new_places = 6.0;
 
 // How much of a hypothesis' pace is its last move; and the chance of a jump from which on rows that
 // go on at another pace than the robot are likelier to be of another place.
