@@ -111,13 +111,13 @@ TEST(FloatKernels, FuseAlsoWhereTheProcessorCannot) {
         for (std::size_t i = 0; i < size; ++i) {
           rows[2 * size + i] = i / 8 % 2 == 0 ? query[i] : -query[i - 8];
         }
-        for (const FloatKernels* column : float_kernels()) {
-          if (!column->supported()) continue;
+        for (const FloatKernels* kernels : float_kernels()) {
+          if (!kernels->supported()) continue;
           std::array<double, 4> dots{};
-          column->dots(query.data(), rows.data(), size, dots.size(), dots.data());
+          kernels->dots(query.data(), rows.data(), size, dots.size(), dots.data());
           for (std::size_t row = 0; row < dots.size(); ++row) {
             expect_same(dots[row], dot_in_order(query, std::span(rows).subspan(row * size, size)),
-                        std::string(column->name) + ' ' + std::to_string(scale) + ' ' +
+                        std::string(kernels->name) + ' ' + std::to_string(scale) + ' ' +
                             std::to_string(step) + ' ' + std::to_string(row));
           }
         }
@@ -129,8 +129,8 @@ TEST(FloatKernels, FuseAlsoWhereTheProcessorCannot) {
 TEST(FloatKernels, AreTheSameBytesOnEveryProcessor) {
   std::mt19937 random(14);
   std::normal_distribution<float> normal;
-  for (const FloatKernels* column : float_kernels()) {
-    if (!column->supported()) continue;
+  for (const FloatKernels* kernels : float_kernels()) {
+    if (!kernels->supported()) continue;
     for (const std::size_t size : {0U, 16U, 48U, 736U, 1024U, 1040U, 9216U}) {
       for (const std::size_t count : {0U, 1U, 3U, 4U, 9U}) {
         std::vector<float> query(size);
@@ -138,10 +138,10 @@ TEST(FloatKernels, AreTheSameBytesOnEveryProcessor) {
         for (float& value : query) value = normal(random);
         for (float& value : rows) value = normal(random);
         std::vector<double> dots(count + 1, -1.0);
-        column->dots(query.data(), rows.data(), size, count, dots.data());
+        kernels->dots(query.data(), rows.data(), size, count, dots.data());
         for (std::size_t row = 0; row < count; ++row) {
           EXPECT_EQ(dots[row], dot(query, std::span(rows).subspan(row * size, size)))
-              << column->name << ' ' << size << ' ' << row;
+              << kernels->name << ' ' << size << ' ' << row;
         }
         EXPECT_EQ(dots[count], -1.0) << "nothing behind the last";
       }
@@ -159,16 +159,16 @@ TEST(FloatKernels, OfSeveralAreThoseOfEach) {
     for (float& value : query) value = scale * normal(random);
     for (float& value : rows) value = scale * normal(random);
     const std::size_t stride = count + 2;
-    for (const FloatKernels* column : float_kernels()) {
-      if (!column->supported()) continue;
+    for (const FloatKernels* kernels : float_kernels()) {
+      if (!kernels->supported()) continue;
       std::vector<double> dots(queries * stride, -1.0);
-      column->dots_block(query.data(), queries, rows.data(), size, count, dots.data(), stride);
+      kernels->dots_block(query.data(), queries, rows.data(), size, count, dots.data(), stride);
       for (std::size_t q = 0; q < queries; ++q) {
         for (std::size_t row = 0; row < count; ++row) {
           expect_same(dots[q * stride + row],
                       dot(std::span(query).subspan(q * size, size),
                           std::span(rows).subspan(row * size, size)),
-                      std::string(column->name) + ' ' + std::to_string(size) + ' ' +
+                      std::string(kernels->name) + ' ' + std::to_string(size) + ' ' +
                           std::to_string(q) + ' ' + std::to_string(row) + ' ' +
                           std::to_string(scale));
         }

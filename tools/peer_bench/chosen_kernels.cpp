@@ -35,10 +35,10 @@ const IntegerKernels& best_integer_kernels() noexcept {
 /// "avx512-vnni"), or those in plain C++.
 const FloatKernels& best_float_kernels() noexcept {
   const char* const name = wanted();
-  for (const FloatKernels* column : float_kernels()) {
-    if (column->supported() &&
-        (name == nullptr || std::string_view(name).starts_with(column->name))) {
-      return *column;
+  for (const FloatKernels* kernels : float_kernels()) {
+    if (kernels->supported() &&
+        (name == nullptr || std::string_view(name).starts_with(kernels->name))) {
+      return *kernels;
     }
   }
   return *float_kernels().back();
