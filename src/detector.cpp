@@ -96,6 +96,14 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
 // As much is told at most of a frame that shows what an unsettled one did.
 constexpr auto in_doubt = static_cast<float>(PendingAnswers::most_in_doubt);
 
+/// What a drive starts from counts for less where it is localised: it may begin anywhere on the
+/// map, and has to be standardised soon as the places there were.
+std::size_t drive_prior(const MatcherConfig& config) {
+  constexpr std::size_t less = 3;
+  const std::size_t prior = config.standardisation.prior_frames;
+  return config.use == Use::localise ? std::max<std::size_t>(prior / less, 1) : prior;
+}
+
 }  // namespace
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory)
@@ -104,7 +112,7 @@ Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::by
 
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, ArenaMemory&& memory)
     : Detector(Arena(memory.span()), config, &map, capacity_of(map), std::move(memory)) {
-  statistics_.start_from(map.statistics(), config.standardisation.prior_frames);
+  statistics_.start_from(map.statistics(), drive_prior(config));
   if (config.use == Use::close_loops) static_cast<void>(map.begin_session());
   if (has_keyframes(config)) {
     if (const std::optional<double> spacing = spacing_of(map)) keyframes_.go_by(*spacing);

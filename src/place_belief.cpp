@@ -381,11 +381,18 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
                scene.novelty > Scene::least_novelty ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
-  const double varies = has_earlier_drives(view) ? least_variance : least_variance_of_new_places;
-  likeliest_ = Likeliest{top->row,
-                         index,
-                         {logarithm(sure) - logarithm(1.0 - sure), wrong_.lead(top->gain, varies),
-                          top->contrast, logarithm(1.0 + top->age), 0.0, top->doubt}};
+  // Less than that says no more.
+  constexpr double least_new = 1e-4;
+  Evidence evidence;
+  evidence.earlier_drives = has_earlier_drives(view);
+  evidence.odds = logarithm(sure) - logarithm(1.0 - sure);
+  evidence.known = -logarithm(least_new + new_place_);
+  evidence.lead = wrong_.lead(
+      top->gain, evidence.earlier_drives ? least_variance : least_variance_of_new_places);
+  evidence.contrast = top->contrast;
+  evidence.age = logarithm(1.0 + top->age);
+  evidence.doubt = top->doubt;
+  likeliest_ = Likeliest{top->row, index, evidence};
 }
 
 /// Another visit of the likeliest row's place takes over how the robot came here. Where the visit

@@ -71,7 +71,8 @@ struct Standardisation {
   /// Divide each feature by its deviation around its running mean. Off: descriptors as they come.
   bool on = true;
   /// The weight, in frames, of what a drive starts from, one that becomes the map as well: the
-  /// map's statistics or, where it has none, the first frame's; >= 1.
+  /// map's statistics or, where it has none, the first frame's; >= 1. A third of it, and 1 at
+  /// least, where a drive is localised.
   std::size_t prior_frames = 15;
   /// A frame never weighs less than 1/horizon, so that the statistics follow light and
   /// surroundings; >= 1, frames.

@@ -234,12 +234,14 @@ class NaiveBelief {
       variance = (1.0 - a) * (variance + a * off * off);
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
-    evidence = {std::log(big / (1.0 - big)),
-                (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 6.0)),
-                best->second.clear,
-                std::log(1.0 + best->second.age),
-                0.0,
-                best->second.doubt};
+    evidence.earlier_drives = earlier_drives_;
+    evidence.odds = std::log(big / (1.0 - big));
+    evidence.known = -std::log(1e-4 + new_place);
+    evidence.lead =
+        (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 6.0));
+    evidence.contrast = best->second.clear;
+    evidence.age = std::log(1.0 + best->second.age);
+    evidence.doubt = best->second.doubt;
   }
 
   bool earlier_drives_;
@@ -269,7 +271,9 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ++judged;
     const Evidence& e = belief.likeliest()->evidence;
     ASSERT_EQ(belief.likeliest()->row, naive.likeliest);
+    ASSERT_EQ(e.earlier_drives, naive.evidence.earlier_drives);
     ASSERT_NEAR(e.odds, naive.evidence.odds, 1e-3);
+    ASSERT_NEAR(e.known, naive.evidence.known, 1e-6);
     ASSERT_NEAR(e.lead, naive.evidence.lead, 1e-6);
     ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
     ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);

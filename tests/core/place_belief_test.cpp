@@ -267,6 +267,42 @@ TEST(PlaceBelief, TakesNoneOfSeveralScoresOfZero) {
   EXPECT_EQ(accepted(drive_through(repeated, part, settings(Use::localise))), 0U);
 }
 
+TEST(PlaceBelief, TakesNoneOfTwoPlacesThatAreAlike) {
+  // Nothing says somewhere new, and nothing says which of the two.
+  const oracle::Vectors part = way(14, 150, 0.5F, 1);
+  oracle::Vectors twice = part;
+  twice.insert(twice.end(), part.begin(), part.end());
+  for (const std::uint32_t noise : {1U, 2U, 3U}) {
+    const Said said = drive_through(twice, way(14, 150, 0.5F, noise), settings(Use::localise));
+    EXPECT_EQ(accepted(said), 0U) << noise;
+  }
+}
+
+TEST(PlaceBelief, AShortTraceSufficesWhereNothingElseIsLeft) {
+  // Followed for a dozen frames, and clearer than all else.
+  Evidence e;
+  e.earlier_drives = true;
+  e.odds = 6.0;
+  e.known = 7.0;
+  e.lead = 2.0;
+  e.contrast = 1.3;
+  e.age = 1.3;
+  e.margin = 0.08;
+  EXPECT_LT(log_odds_followed(e), 0.0);
+  EXPECT_GT(log_odds(e), 3.5);
+  EXPECT_DOUBLE_EQ(log_odds(e), log_odds_alone(e));
+  // The newest frames speak against it.
+  e.doubt = 2.0;
+  EXPECT_LT(log_odds(e), 3.5);
+  e.doubt = 0.0;
+  // Another place is nearly as likely: then it has to be followed for longer.
+  e.odds = 1.9;
+  EXPECT_DOUBLE_EQ(log_odds(e), log_odds_followed(e));
+  e.lead = 8.0;
+  e.age = 3.5;
+  EXPECT_GT(log_odds(e), 3.5);
+}
+
 TEST(PlaceBelief, TakesAnything) {
   const std::vector<float> constant(size, 1.0F / 16.0F);
   const oracle::Vectors alike(200, constant);

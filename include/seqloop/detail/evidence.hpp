@@ -2,24 +2,44 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace seqloop {
 
 /// What the newest frame's likeliest row is judged by: the inputs of its probability.
 struct Evidence {
   double odds = 0.0;      ///< ln of the belief in the row's place by that in all else
+  double known = 0.0;     ///< -ln of 1e-4 and the belief in "somewhere new"
   double lead = 0.0;      ///< how far it has done better than the best wrong rows usually do
   double contrast = 0.0;  ///< how much better it looks than the rows and frames around it
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
+  bool earlier_drives = false;  ///< whether the map has places of earlier drives
 };
 
-/// The log-odds that the row is right, by all but the doubt: a logistic regression. Source:
-/// src/README.md, section 6.4.
-[[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
-  return -5.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
+/// The log-odds that the row is right, by a trace that has been followed for long: a logistic
+/// regression. Source: src/README.md, section 6.4.
+[[nodiscard]] inline double log_odds_followed(const Evidence& e) noexcept {
+  const double constant = e.earlier_drives ? -6.179 : -5.879;
+  return constant + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
          8.984 * e.margin;
+}
+
+/// The same by how little is left for all else, however short the trace is: one regression where
+/// the map has places of earlier drives, and one where it has not. It says nothing of a place that
+/// has less than .88 of the belief: others may be as good. Source: as above.
+[[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
+  constexpr double least_odds = 2.0;
+  if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
+  return e.earlier_drives
+             ? -2.35 + 0.579 * e.known + 1.443 * e.contrast + 6.389 * e.margin - 0.665 * e.doubt
+             : -3.9 + 0.514 * e.known + 1.805 * e.contrast + 5.154 * e.margin - 0.181 * e.doubt;
+}
+
+/// The log-odds that the row is right: either suffices.
+[[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
+  return std::max(log_odds_followed(e), log_odds_alone(e));
 }
 
 /// The log-odds that the robot is there still, and was not carried away with the newest frames.
