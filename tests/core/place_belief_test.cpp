@@ -7,6 +7,7 @@
 
 #include "core/matcher.hpp"
 #include "core/ways.hpp"
+#include "seqloop/detail/evidence.hpp"
 
 namespace seqloop {
 namespace {

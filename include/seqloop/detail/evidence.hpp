@@ -9,7 +9,7 @@ namespace seqloop {
 /// What the newest frame's likeliest row is judged by: the inputs of its probability.
 struct Evidence {
   double odds = 0.0;      ///< ln of the belief in the row's place by that in all else
-  double known = 0.0;     ///< -ln of 1e-4 and the belief in "somewhere new"
+  double known = 0.0;     ///< -ln (1e-4 + the belief in "somewhere new")
   double lead = 0.0;      ///< how far it has done better than the best wrong rows usually do
   double contrast = 0.0;  ///< how much better it looks than the rows and frames around it
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
