@@ -96,12 +96,10 @@ bool well_formed(std::span<const float> values, const MatcherConfig& config) {
 // As much is told at most of a frame that shows what an unsettled one did.
 constexpr auto in_doubt = static_cast<float>(PendingAnswers::most_in_doubt);
 
-/// What a drive starts from counts for less where it is localised: it may begin anywhere on the
-/// map, and has to be standardised soon as the places there were.
+/// Frames that the map's statistics weigh for the drive.
 std::size_t drive_prior(const MatcherConfig& config) {
-  constexpr std::size_t less = 3;
-  const std::size_t prior = config.standardisation.prior_frames;
-  return config.use == Use::localise ? std::max<std::size_t>(prior / less, 1) : prior;
+  const Standardisation& how = config.standardisation;
+  return config.use == Use::localise ? how.prior_where_localised() : how.prior_frames;
 }
 
 }  // namespace

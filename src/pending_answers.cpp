@@ -58,6 +58,7 @@ void PendingAnswers::accept_from(float least) noexcept {
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
+  evidence_.reset();
   at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0,
                {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0.0,   0, {}};
   end_ = frame + 1;
@@ -76,7 +77,6 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
                                     std::uint64_t oldest) noexcept {
-  evidence_.reset();
   const auto& likeliest = belief.likeliest();
   at(newest).new_place = belief.new_place();
   if (!likeliest) return 0;

@@ -106,18 +106,19 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   }
   novelty_ = scene->novelty;
   if (has_earlier_drives(view)) first_frames_.take(view, *scene);
-  move(view.map->order(), *scene, jumps);
-  double on = ended_.mass;
-  for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const bool begins = weighed_++ < FirstFrames::most;
   const double comes = (begins && has_earlier_drives(view) ? coming_at_first : coming) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
+  const double each = born / static_cast<double>(view.seen->scanned().bits.size());
+  move(view.map->order(), *scene, jumps, has_earlier_drives(view) ? 0.0 : each);
+  double on = ended_.mass;
+  for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const double left = leaving * novelty_;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
   ended_.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
-  give_birth(view, born / static_cast<double>(view.seen->scanned().bits.size()));
+  give_birth(view, each);
   hand_over(*view.map);
   weigh(view, *scene);
   judge(view, *scene);
@@ -148,7 +149,9 @@ bool PlaceBelief::goes_at_its_pace(const PlaceOrder& order, std::size_t row,
 }
 
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
-void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps) noexcept {
+/// @param least belief in a row that is not forgotten
+void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps,
+                       double least) noexcept {
   std::array<Moves, most> moves;
   for (std::size_t i = 0; i < count_; ++i) {
     const bool at_its_pace = scene.drives() && goes_at_its_pace(order, rows_[i].row, jumps);
@@ -188,7 +191,7 @@ void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps
       }
       mass += part;
     }
-    if (!reached) continue;
+    if (!reached || mass < least) continue;
     moved_[moved_count_++] = {
         row, mass, 1.0,
         likeliest < most ? static_cast<BeliefTraces::Index>(likeliest) : BeliefTraces::none};

@@ -71,12 +71,19 @@ struct Standardisation {
   /// Divide each feature by its deviation around its running mean. Off: descriptors as they come.
   bool on = true;
   /// The weight, in frames, of what a drive starts from, one that becomes the map as well: the
-  /// map's statistics or, where it has none, the first frame's; >= 1. A third of it, and 1 at
-  /// least, where a drive is localised.
+  /// map's statistics or, where it has none, the first frame's; >= 1. Where a drive is localised
+  /// (`Use::localise`), the map's have a third of it.
   std::size_t prior_frames = 15;
   /// A frame never weighs less than 1/horizon, so that the statistics follow light and
   /// surroundings; >= 1, frames.
   std::size_t horizon = 30;
+
+  /// What the map's statistics weigh for a drive that is localised: it may begin anywhere on the
+  /// map, and has to be standardised soon as the places there were.
+  [[nodiscard]] std::size_t prior_where_localised() const noexcept {
+    constexpr std::size_t part = 3;
+    return prior_frames < part ? 1 : prior_frames / part;
+  }
 };
 
 /// Everything a detector can be told, with the paper's values (Table 2) where it has any.

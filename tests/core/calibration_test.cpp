@@ -30,7 +30,7 @@ TEST(Calibration, SaysWhatWasRight) {
 }
 
 TEST(Calibration, LeavesWhatIsAccepted) {
-  for (const double probability : {0.951, 0.99, 0.999999, 1.0}) {
+  for (const double probability : {0.95, 0.99, 0.999999, 1.0}) {
     EXPECT_EQ(calibrated(probability), probability);
     EXPECT_EQ(before_calibration(probability), probability);
   }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a step promises beside the right answer: bounded work, fixed memory, honest gates.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/matcher.hpp"
 
@@ -16,6 +18,20 @@ oracle::Vectors two_laps(std::uint32_t seed, std::size_t frames, std::size_t siz
   const oracle::Vectors second = oracle::drive(seed, frames, size, 0.3F);
   laps.insert(laps.end(), second.begin(), second.end());
   return laps;
+}
+
+// It may begin anywhere on the map, and has to be standardised soon as the places there were.
+TEST(Detector, StartsADriveThatIsLocalisedFromAThirdOfWhatTheMapKnows) {
+  const oracle::Vectors known = oracle::drive(5, 40, 16);
+  for (const auto& [prior, third] :
+       std::array<std::pair<std::size_t, std::size_t>, 4>{{{15, 5}, {10, 3}, {2, 1}, {1, 1}}}) {
+    MatcherConfig config{.use = Use::localise};
+    config.standardisation.prior_frames = prior;
+    PlaceMap map(config, {known.size(), known.front().size()});
+    for (const auto& descriptor : known) ASSERT_TRUE(map.learn(descriptor));
+    ASSERT_TRUE(map.add(known.front()));
+    EXPECT_EQ(Detector(config, map).statistics().frames(), third) << prior;
+  }
 }
 
 TEST(Detector, NeverComputesMoreThanThePlanSays) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <random>
@@ -15,6 +16,8 @@
 #include "core/ways.hpp"
 #include "seqloop/detail/frame_steps.hpp"
 #include "seqloop/detail/stop_frames.hpp"
+#include "seqloop/detail/usual.hpp"
+#include "seqloop/difference.hpp"
 
 namespace seqloop {
 namespace {
@@ -40,6 +43,35 @@ std::vector<bool> keyframes_of(const Vectors& drive, double variance, double spa
   for (const auto& descriptor : drive) are.push_back(keyframes.take(descriptor, variance));
   return are;
 }
+
+/// The same with a copy of each of the two frames that the next are compared with.
+class NaiveKeyframes {
+ public:
+  bool take(const std::vector<float>& descriptor, double variance) {
+    const double unrelated = 2.0 * variance;
+    const bool was_dense = apart_.mean() > 2.0;
+    ++since_change_;
+    const bool changed =
+        squared_distance(last_change_, descriptor) > (was_dense ? 0.15 : 0.1) * unrelated;
+    const double differs = squared_distance(last_, descriptor);
+    if (changed) {
+      apart_.take(static_cast<double>(std::min<std::uint64_t>(since_change_, 4)));
+      since_change_ = 0;
+      last_change_ = descriptor;
+    }
+    if (was_dense ? !changed : differs <= 0.15 * new_.mean() * unrelated) return false;
+    last_ = descriptor;
+    new_.take(std::min(differs, unrelated) / unrelated);
+    return true;
+  }
+
+ private:
+  Usual apart_{1.0};
+  Usual new_{0.1};
+  std::uint64_t since_change_ = 0;
+  std::vector<float> last_ = std::vector<float>(2, 0.0F);
+  std::vector<float> last_change_ = last_;
+};
 
 double variance_of(const Vectors& drive) {
   double sum = 0.0;
@@ -87,6 +119,34 @@ TEST(Keyframes, LeaveOutAStop) {
   EXPECT_EQ(std::ranges::count(are, true), 200);
   EXPECT_TRUE(std::all_of(are.begin(), are.begin() + 101, [](bool is) { return is; }));
   EXPECT_TRUE(std::all_of(are.begin() + 401, are.end(), [](bool is) { return is; }));
+}
+
+// Frames that are one of the two, both or none, in all orders.
+TEST(Keyframes, AreThoseOfTheNaiveRule) {
+  std::mt19937 dice(20261126);  // NOLINT(*-msc51-cpp): the same each time
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  std::size_t keyframes = 0;
+  constexpr std::size_t frames = 20000;
+  for (const double slowness : {0.2, 1.0, 3.0}) {
+    ArenaMemory memory(1 << 16, {});
+    Arena arena(memory.span());
+    Keyframes fast(arena, 2);
+    NaiveKeyframes naive;
+    double angle = 0.0;
+    for (std::size_t i = 0; i < frames; ++i) {
+      // Mostly small steps either way, now and then none, and seldom another scene.
+      const double kind = any(dice);
+      if (kind > 0.1) angle += (any(dice) - 0.3) / slowness;
+      if (kind > 0.98) angle += 2.0;
+      const std::vector<float> descriptor{static_cast<float>(std::cos(angle)),
+                                          static_cast<float>(std::sin(angle))};
+      const bool is = naive.take(descriptor, 1.0);
+      ASSERT_EQ(fast.take(descriptor, 1.0), is) << slowness << ", " << i;
+      keyframes += is ? 1 : 0;
+    }
+  }
+  EXPECT_GT(keyframes, frames / 2);
+  EXPECT_LT(keyframes, 3 * frames - frames / 2);
 }
 
 // The same frames are few beside a map whose places differ much, and all beside one like them.

@@ -104,6 +104,14 @@ class NaiveBelief {
         here.mass = mass;
       }
     }
+    // 6.3, what comes
+    const bool begins = weighed_++ < 20;
+    const double coming = (begins && earlier_drives_ ? 0.1 : 0.001) *
+                          std::min(1.0, static_cast<double>(view.rows) / 200.0);
+    const double born = coming * std::min(1.0, 4.0 * w) * new_place;
+    if (!earlier_drives_) {
+      std::erase_if(moved, [&](const auto& at) { return at.second.mass < born / n; });
+    }
     std::vector<std::pair<double, std::size_t>> order;
     for (const auto& [row, at] : moved) order.emplace_back(-at.mass, row);
     std::ranges::sort(order);
@@ -114,10 +122,6 @@ class NaiveBelief {
       on += at.mass;
       at.mass *= 1.0 - 0.01 * w;
     }
-    const bool begins = weighed_++ < 20;
-    const double coming = (begins && earlier_drives_ ? 0.1 : 0.001) *
-                          std::min(1.0, static_cast<double>(view.rows) / 200.0);
-    const double born = coming * std::min(1.0, 4.0 * w) * new_place;
     new_place += 0.01 * w * on - born;
     for (const auto& found : view.seen->found()) {
       if (born <= 0.0) break;

@@ -304,6 +304,38 @@ TEST(PlaceBelief, AShortTraceSufficesWhereNothingElseIsLeft) {
   EXPECT_GT(log_odds(e), 3.5);
 }
 
+// Section 6.4, number by number.
+TEST(PlaceBelief, WeighsEvidenceByWhatTheMapIsOf) {
+  Evidence e;
+  e.odds = 3.0;
+  e.known = 5.0;
+  e.lead = 4.0;
+  e.contrast = 0.5;
+  e.age = 2.0;
+  e.margin = 0.1;
+  e.doubt = 1.5;
+  EXPECT_NEAR(log_odds_followed(e),
+              -5.879 + 0.104 * 3.0 + 0.89 * 4.0 + 1.094 * 0.5 + 0.808 * 2.0 + 8.984 * 0.1, 1e-12);
+  EXPECT_NEAR(log_odds_alone(e), -3.9 + 0.514 * 5.0 + 1.805 * 0.5 + 5.154 * 0.1 - 0.181 * 1.5,
+              1e-12);
+  e.earlier_drives = true;
+  EXPECT_NEAR(log_odds_followed(e),
+              -6.179 + 0.104 * 3.0 + 0.89 * 4.0 + 1.094 * 0.5 + 0.808 * 2.0 + 8.984 * 0.1, 1e-12);
+  EXPECT_NEAR(log_odds_alone(e), -2.35 + 0.579 * 5.0 + 1.443 * 0.5 + 6.389 * 0.1 - 0.665 * 1.5,
+              1e-12);
+}
+
+TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeRead) {
+  const oracle::Vectors drive = way(15, 100, 0.5F, 1);
+  const MatcherConfig config = settings(Use::localise);
+  PlaceMap map = map_of(drive, config);
+  Detector detector(config, map);
+  for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+  EXPECT_TRUE(detector.evidence());
+  static_cast<void>(detector.step(std::vector<float>(size, std::nanf(""))));
+  EXPECT_FALSE(detector.evidence());
+}
+
 TEST(PlaceBelief, TakesAnything) {
   const std::vector<float> constant(size, 1.0F / 16.0F);
   const oracle::Vectors alike(200, constant);

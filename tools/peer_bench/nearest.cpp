@@ -115,8 +115,10 @@ class Nearest : public Peer {
   /// A drive starts from what was learnt.
   void start() {
     if (!learnt_) return;
+    const Standardisation how;
     statistics_.emplace((*learnt_)->mean().size());
-    (*statistics_)->start_from(**learnt_, Standardisation{}.prior_frames);
+    (*statistics_)
+        ->start_from(**learnt_, mapping_ ? how.prior_frames : how.prior_where_localised());
   }
 
   void make_index(std::size_t size) {

@@ -49,11 +49,13 @@ class Keyframes {
   bool take(std::span<const float> descriptor, double variance) noexcept {
     const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense();
-    const bool changed = take_change(descriptor, unrelated);
-    if (was_dense && !changed) return false;
-    const double differs = squared_distance(last_, descriptor);
-    if (!was_dense && differs <= stands * usually_new_.mean() * unrelated) return false;
-    std::ranges::copy(descriptor, last_.begin());
+    const double from_change = squared_distance(last_change_, descriptor);
+    const double differs = last_is_change_ ? from_change : squared_distance(last_, descriptor);
+    const bool changed = take_change(from_change, unrelated);
+    const bool is_keyframe =
+        was_dense ? changed : differs > stands * usually_new_.mean() * unrelated;
+    keep(descriptor, changed, is_keyframe);
+    if (!is_keyframe) return false;
     const double is_new = std::min(differs, unrelated);
     if (unrelated > 0.0) usually_new_.take(is_new / unrelated);
     since_cut_ = is_new < cut * unrelated ? since_cut_ + 1 : 0;
@@ -80,17 +82,29 @@ class Keyframes {
   [[nodiscard]] bool is_dense() const noexcept { return usually_apart_.mean() > dense_; }
 
  private:
-  /// Whether a frame looks unlike the last that did. @param unrelated squared distance of two
-  /// frames that have nothing to do with each other
-  bool take_change(std::span<const float> descriptor, double unrelated) noexcept {
+  /// Whether a frame looks unlike the last that did. @param differs squared distance of the two
+  /// @param unrelated of two frames that have nothing to do with each other
+  bool take_change(double differs, double unrelated) noexcept {
     const std::uint64_t frames = ++since_change_;
     const double change = is_dense() ? change_where_dense_ : change_;
-    if (squared_distance(last_change_, descriptor) <= change * unrelated) return false;
-    std::ranges::copy(descriptor, last_change_.begin());
+    if (differs <= change * unrelated) return false;
     // A robot that stands says nothing of how fast it goes.
     usually_apart_.take(static_cast<double>(std::min(frames, most_apart)));
     since_change_ = 0;
     return true;
+  }
+
+  /// A frame that is both is kept once, and so compared once with the next: mostly all are.
+  void keep(std::span<const float> descriptor, bool changed, bool is_keyframe) noexcept {
+    if (changed && is_keyframe) {
+      std::ranges::copy(descriptor, last_change_.begin());
+      last_is_change_ = true;
+      return;
+    }
+    if (!changed && !is_keyframe) return;
+    if (last_is_change_ && changed) std::ranges::copy(last_change_, last_.begin());
+    last_is_change_ = false;
+    std::ranges::copy(descriptor, (changed ? last_change_ : last_).begin());
   }
 
   // Less than this share of what is usually new is nothing.
@@ -109,6 +123,7 @@ class Keyframes {
   Usual usually_apart_{apart_at_first};      // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes
+  bool last_is_change_ = true;               // then the last keyframe is kept as the last change
   std::span<float> last_;                    // [D]
   std::span<float> last_change_;             // [D]
 };

@@ -61,7 +61,8 @@ class PendingAnswers {
   std::size_t believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
                       std::uint64_t oldest) noexcept;
 
-  /// What speaks for the likeliest row of the newest frame; none: nothing is known of any.
+  /// What speaks for the likeliest row of the newest frame; none: nothing is known of any, or the
+  /// frame could not be read.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept { return evidence_; }
 
   /// The chance that the robot is carried away with a frame, beyond what is usual.

@@ -128,7 +128,7 @@ class PlaceBelief {
   static void prefetch(const SceneView& view) noexcept;
   [[nodiscard]] bool goes_at_its_pace(const PlaceOrder& order, std::size_t row,
                                       double jumps) const noexcept;
-  void move(const PlaceOrder& order, const Scene& scene, double jumps) noexcept;
+  void move(const PlaceOrder& order, const Scene& scene, double jumps, double least) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
   void hand_over(const PlaceMap& map) noexcept;
