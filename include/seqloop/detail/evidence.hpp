@@ -21,20 +21,17 @@ struct Evidence {
 /// The log-odds that the row is right, by a trace that has been followed for long: a logistic
 /// regression. Source: src/README.md, section 6.4.
 [[nodiscard]] inline double log_odds_followed(const Evidence& e) noexcept {
-  const double constant = e.earlier_drives ? -6.179 : -5.879;
-  return constant + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
+  return -5.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
          8.984 * e.margin;
 }
 
-/// The same by how little is left for all else, however short the trace is: one regression where
-/// the map has places of earlier drives, and one where it has not. It says nothing of a place that
-/// has less than .88 of the belief: others may be as good. Source: as above.
+/// The same by how little is left for all else, however short the trace is. It says nothing of a
+/// place that has less than .88 of the belief: others may be as good. Source: as above.
 [[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
   constexpr double least_odds = 2.0;
   if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
-  return e.earlier_drives
-             ? -2.35 + 0.579 * e.known + 1.443 * e.contrast + 6.389 * e.margin - 0.665 * e.doubt
-             : -3.9 + 0.514 * e.known + 1.805 * e.contrast + 5.154 * e.margin - 0.181 * e.doubt;
+  const double constant = e.earlier_drives ? -3.25 : -4.2;
+  return constant + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
 }
 
 /// The log-odds that the row is right: either suffices.
