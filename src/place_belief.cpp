@@ -111,6 +111,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double each = born / static_cast<double>(view.seen->scanned().bits.size());
+  // In a drive's own map what is believed less than a row that is found anew will be found again.
   move(view.map->order(), *scene, jumps, has_earlier_drives(view) ? 0.0 : each);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
