@@ -78,8 +78,9 @@ def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
             for session, frame, time_ns, _, content, visit, statistics in heard if visit is None and statistics is None}
     expect(told == saved, f"Fast DDS hears every place that is saved, to the byte: {len(told)} of {len(saved)}")
     first = heard[0]
-    expect(first[1] == 0 and first[3] is not None and first[3][0] == "anna" and first[3][2].startswith("int8")
-           and first[3][4] == 64, f"the first says whose it is and what it is like: {first[3]}")
+    # Its drive's first frame, or the next that a busy machine leaves.
+    expect(first[:2] == min(saved) and first[3] is not None and first[3][0] == "anna" and first[3][2].startswith("int8")
+           and first[3][4] == 64, f"the first says whose it is and what it is like: {first[:2]}, {first[3]}")
     expect(all(about is None or about == first[3] for _, _, _, about, *_ in heard), "and all that say so say the same")
     newest = [message[6] for message in heard if message[6] is not None][-1]
     expect(newest == statistics_of(work / "anna.seqloop"), f"and by what it is standardised, of {newest[0]} frames")
