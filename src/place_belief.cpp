@@ -105,14 +105,15 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
     return sketches_;
   }
   novelty_ = scene->novelty;
-  if (has_earlier_drives(view)) first_frames_.take(view, *scene);
+  const bool earlier_drives = has_earlier_drives(view);
+  if (earlier_drives) first_frames_.take(view, *scene);
   const bool begins = weighed_++ < FirstFrames::most;
-  const double comes = (begins && has_earlier_drives(view) ? coming_at_first : coming) *
+  const double comes = (begins && earlier_drives ? coming_at_first : coming) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double each = born / static_cast<double>(view.seen->scanned().bits.size());
   // In a drive's own map what is believed less than a row that is found anew will be found again.
-  move(view.map->order(), *scene, jumps, has_earlier_drives(view) ? 0.0 : each);
+  move(view.map->order(), *scene, jumps, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const double left = leaving * novelty_;
@@ -387,16 +388,17 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   // Less than that says no more.
   constexpr double least_new = 1e-4;
-  Evidence evidence;
-  evidence.earlier_drives = has_earlier_drives(view);
-  evidence.odds = logarithm(sure) - logarithm(1.0 - sure);
-  evidence.known = -logarithm(least_new + new_place_);
-  evidence.lead = wrong_.lead(
-      top->gain, evidence.earlier_drives ? least_variance : least_variance_of_new_places);
-  evidence.contrast = top->contrast;
-  evidence.age = logarithm(1.0 + top->age);
-  evidence.doubt = top->doubt;
-  likeliest_ = Likeliest{top->row, index, evidence};
+  const bool earlier_drives = has_earlier_drives(view);
+  const double varies = earlier_drives ? least_variance : least_variance_of_new_places;
+  likeliest_ = Likeliest{top->row,
+                         index,
+                         {.odds = logarithm(sure) - logarithm(1.0 - sure),
+                          .known = -logarithm(least_new + new_place_),
+                          .lead = wrong_.lead(top->gain, varies),
+                          .contrast = top->contrast,
+                          .age = logarithm(1.0 + top->age),
+                          .doubt = top->doubt,
+                          .earlier_drives = earlier_drives}};
 }
 
 /// Another visit of the likeliest row's place takes over how the robot came here. Where the visit

@@ -281,14 +281,13 @@ TEST(PlaceBelief, TakesNoneOfTwoPlacesThatAreAlike) {
 
 TEST(PlaceBelief, AShortTraceSufficesWhereNothingElseIsLeft) {
   // Followed for a dozen frames, and clearer than all else.
-  Evidence e;
-  e.earlier_drives = true;
-  e.odds = 6.0;
-  e.known = 7.0;
-  e.lead = 2.0;
-  e.contrast = 1.3;
-  e.age = 1.3;
-  e.margin = 0.08;
+  Evidence e{.odds = 6.0,
+             .known = 7.0,
+             .lead = 2.0,
+             .contrast = 1.3,
+             .age = 1.3,
+             .margin = 0.08,
+             .earlier_drives = true};
   EXPECT_LT(log_odds_followed(e), 0.0);
   EXPECT_GT(log_odds(e), 3.5);
   EXPECT_DOUBLE_EQ(log_odds(e), log_odds_alone(e));
@@ -306,14 +305,13 @@ TEST(PlaceBelief, AShortTraceSufficesWhereNothingElseIsLeft) {
 
 // Section 6.4, number by number.
 TEST(PlaceBelief, WeighsEvidenceByWhatTheMapIsOf) {
-  Evidence e;
-  e.odds = 3.0;
-  e.known = 5.0;
-  e.lead = 4.0;
-  e.contrast = 0.5;
-  e.age = 2.0;
-  e.margin = 0.1;
-  e.doubt = 1.5;
+  Evidence e{.odds = 3.0,
+             .known = 5.0,
+             .lead = 4.0,
+             .contrast = 0.5,
+             .age = 2.0,
+             .margin = 0.1,
+             .doubt = 1.5};
   EXPECT_NEAR(log_odds_followed(e),
               -5.879 + 0.104 * 3.0 + 0.89 * 4.0 + 1.094 * 0.5 + 0.808 * 2.0 + 8.984 * 0.1, 1e-12);
   const double alone = 1.116 * 5.0 + 7.5 * 0.1 - 0.9 * 1.5;
