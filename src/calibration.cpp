@@ -12,7 +12,7 @@ namespace {
 // Log-odds that a trace gives, and those of what was right. Linear between; equal behind the last.
 using Points = std::array<double, 7>;
 constexpr Points said{-4.6, -1.4, -0.3, 0.8, 2.2, 2.92, 2.944};
-constexpr Points right{-1.9, -0.85, -0.5, -0.1, 0.5, 1.0, 2.944};
+constexpr Points right{-1.25, -0.5, -0.42, 0.0, 0.6, 1.6, 2.944};
 constexpr double slope_before = 0.31;
 
 double between(const Points& from, const Points& to, double slope, double probability) {

@@ -39,7 +39,7 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
       patience_(config.patience),
       after_centre_(config.sequence_length - config.sequence_length / 2),
       grows_(config.use == Use::close_loops),
-      span_(arena, PlaceBelief::depth(config)) {
+      span_(arena, config.use, PlaceBelief::depth(config)) {
   accept_from(config.min_probability);
   const bool used = config.decision == Decision::probability;
   const std::size_t kept = std::bit_ceil(PlaceBelief::depth(config) + config.sequence_length + 1);
@@ -101,7 +101,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   constexpr double half = 0.5;
   const double least = half * belief.usual_novelty();
   const double usual = belief.usual_gain();
-  TraceSpan::take_usual(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
+  span_.take_usual(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {

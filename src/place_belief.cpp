@@ -27,9 +27,12 @@ constexpr double coming_at_first = 0.1;
 constexpr double least_variance = 1.25;
 constexpr double least_variance_of_new_places = 6.0;
 
-// How much of a hypothesis' pace is its last move; and the chance of a jump from which on rows that
-// go on at another pace than the robot are likelier to be of another place.
+// How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows,
+// and where it does a row that soon slows down stays with what looks a little like them. And the
+// chance of a jump from which on rows that go on at another pace than the robot are likelier to be
+// of another place.
 constexpr double last_move = 0.1;
+constexpr double last_move_of_a_drive_that_is_added = 0.02;
 constexpr double jumps_often = 0.01;
 
 constexpr double decay = 0.95;
@@ -273,7 +276,8 @@ void PlaceBelief::take_on(const PlaceOrder& order, Hypothesis& at, const Moved& 
     at = rows_[moved.parent];
     // Far where it is handed over from another visit of the place.
     const std::size_t by = order.apart(at.row, moved.row);
-    if (drives && by <= 2) at.pace += last_move * (static_cast<double>(by) - at.pace);
+    const double part = localises_ ? last_move : last_move_of_a_drive_that_is_added;
+    if (drives && by <= 2) at.pace += part * (static_cast<double>(by) - at.pace);
   }
   at.row = moved.row;
   at.mass = moved.mass;
@@ -436,8 +440,10 @@ double PlaceBelief::usual_gain() const noexcept {
 
 double PlaceBelief::remember(double odds) noexcept {
   constexpr double fading = 0.1;
+  constexpr double too_much = 2.0;
+  const bool left = !localises_ && likeliest_->evidence.doubt > too_much;
   double& past = rows_[likeliest_->index].past;
-  past = std::max(past - fading * novelty_, odds);
+  past = left ? odds : std::max(past - fading * novelty_, odds);
   return past;
 }
 

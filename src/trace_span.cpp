@@ -25,11 +25,14 @@ constexpr double returns = 1e-5;
 /// none.
 /// @param least half of what is new of this drive's frames
 /// @param jumps added to the chance of an end
-Chances chances_of(double change, double least, double jumps) {
+/// @param ends  whether traces end
+Chances chances_of(double change, double least, double jumps, bool ends) {
   constexpr double all = 0.6;
   constexpr double goes_on = 0.15;
   const bool cut = change > all && least < goes_on;
-  return cut ? Chances{0.9, 0.95} : Chances{usual_chances.begins, usual_chances.ends + jumps};
+  const double begins = cut ? 0.9 : usual_chances.begins;
+  if (!ends) return {begins, 0.0};
+  return {begins, cut ? 0.95 : usual_chances.ends + jumps};
 }
 
 /// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
@@ -88,18 +91,20 @@ struct Backward {
 
 }  // namespace
 
-TraceSpan::TraceSpan(Arena& arena, std::size_t most)
-    : forward_(arena.take<Forward>("where a trace may begin and end", most)),
+TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
+    : ends_(use == Use::localise),
+      forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
 void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed,
-                           std::size_t born, double usual, double least) noexcept {
+                           std::size_t born, double usual, double least) const noexcept {
   constexpr double nearly = 0.9;
   constexpr double half = 0.5;
+  const double since_agreed = ends_ ? 0.0 : 0.6;
   const double gained = gain_by_novelty(trace.first(agreed), least);
   for (std::size_t back = 0; back < trace.size(); ++back) {
     BeliefTraces::Step& step = trace[back];
-    const double share = back < agreed ? 0.0 : back < born ? nearly : half;
+    const double share = back < agreed ? since_agreed : back < born ? nearly : half;
     step.gain -= std::max(usual, share * gained) * std::max(step.novelty, least);
   }
 }
@@ -114,7 +119,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain);
-    const Chances chances = chances_of(step.change, least, jumps);
+    const Chances chances = chances_of(step.change, least, jumps, ends_);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
       const double comes_back = gone * returns;
@@ -132,7 +137,8 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     }
     forward_[back] = {fresh, on, gone, likelier, gone_likelier};
   }
-  Backward after{.on = {1.0, usual_chances.ends + jumps}};
+  // Where no trace ends, one that was left has been left since the newest frame.
+  Backward after{.on = {1.0, ends_ ? usual_chances.ends + jumps : 1.0}};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     Pair share;
@@ -141,7 +147,8 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       share[i] = is / (is + here.fresh * after.fresh[i] + here.gone * after.gone[i]);
     }
     on_[back] = {share[0], share[1]};
-    after.step(here.likelier, here.gone_likelier, chances_of(trace[back].change, least, jumps));
+    after.step(here.likelier, here.gone_likelier,
+               chances_of(trace[back].change, least, jumps, ends_));
   }
   return on_.first(asked);
 }

@@ -24,9 +24,9 @@ TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
 }
 
 TEST(Calibration, SaysWhatWasRight) {
-  EXPECT_NEAR(log_odds(calibrated(of_odds(-1.4))), -0.85, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(1.5))), 0.2, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.6))), -1.9 - 0.31, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-1.4))), -0.5, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(1.5))), 0.3, 1e-9);
+  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.6))), -1.25 - 0.31, 1e-9);
 }
 
 TEST(Calibration, LeavesWhatIsAccepted) {

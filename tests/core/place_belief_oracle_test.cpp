@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "core/matcher.hpp"
 #include "core/seen.hpp"
@@ -21,11 +22,14 @@ constexpr std::size_t size = 128;
 class NaiveBelief {
  public:
   /// @param earlier_drives whether the map has places of some
+  /// @param localises whether this one is not added to them
   /// @param jumps as `PlaceBelief::observe` has it
-  NaiveBelief(bool earlier_drives, double jumps) : earlier_drives_(earlier_drives), jumps_(jumps) {}
+  NaiveBelief(bool earlier_drives, bool localises, double jumps)
+      : earlier_drives_(earlier_drives), localises_(localises), jumps_(jumps) {}
 
   struct Row {
     double mass = 0.0, gain = 0.0, wrong = 0.0, clear = 0.0, age = 0.0, doubt = 0.0, pace = 1.0;
+    double past = -10.0;
     std::vector<std::size_t> way;  // rows that it came through, the newest last
   };
 
@@ -99,7 +103,8 @@ class NaiveBelief {
         if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
           largest[row + i] = part;
           here = old;
-          if (w > 0.02) here.pace = 0.9 * old.pace + 0.1 * static_cast<double>(i);
+          const double last = localises_ ? 0.1 : 0.02;
+          if (w > 0.02) here.pace = old.pace + last * (static_cast<double>(i) - old.pace);
         }
         here.mass = mass;
       }
@@ -127,8 +132,8 @@ class NaiveBelief {
       if (born <= 0.0) break;
       Row& at = moved[found.row];
       const double old = at.mass / (at.mass + born / n);
-      at = {at.mass + born / n, at.gain * old, at.wrong * old, at.clear * old,
-            at.age * old,       at.doubt,      at.pace,        at.way};
+      at = {at.mass + born / n, at.gain * old, at.wrong * old, at.clear * old, at.age * old,
+            at.doubt,           at.pace,       at.past,        at.way};
     }
     // Weigh.
     std::map<std::size_t, double> gains;
@@ -174,10 +179,18 @@ class NaiveBelief {
     for (auto& [row, at] : rows_) at.mass /= sum;
     new_place /= sum;
     judge(w, gains);
+    if (rows_.empty()) return;
+    // 6.4, `best`
+    const double here = log_odds(evidence);
+    double& past = rows_.at(likeliest).past;
+    const bool left = !localises_ && evidence.doubt > 2.0;
+    past = left ? here : std::max(past - 0.1 * w, here);
+    best = past;
   }
 
   double new_place = 1.0;
   std::size_t likeliest = 0;
+  double best = 0.0;  // on the likeliest row's way
   Evidence evidence;
 
  private:
@@ -195,9 +208,9 @@ class NaiveBelief {
   /// 6.4
   void judge(double w, const std::map<std::size_t, double>& gains) {
     if (rows_.empty()) return;
-    const auto best =
+    const auto top =
         std::ranges::max_element(rows_, {}, [](const auto& at) { return at.second.mass; });
-    likeliest = best->first;
+    likeliest = top->first;
     const bool on_map = new_place <= 0.5;
     const auto same = [](std::size_t a, std::size_t b) { return a + 10 >= b && a <= b + 10; };
     double big = 0.0;
@@ -212,10 +225,10 @@ class NaiveBelief {
         showed.other = row;
       }
     }
-    showed.sum = best->second.wrong;
+    showed.sum = top->second.wrong;
     showed_.push_back(showed);
     // What was shown 20 frames ago is known better now.
-    const std::vector<std::size_t>& way = best->second.way;
+    const std::vector<std::size_t>& way = top->second.way;
     if (showed_.size() > 20 && on_map && way.size() > 20) {
       Showed& then = showed_[showed_.size() - 21];
       const std::size_t right = way[way.size() - 21];
@@ -242,28 +255,32 @@ class NaiveBelief {
     evidence.odds = std::log(big / (1.0 - big));
     evidence.known = -std::log(1e-4 + new_place);
     evidence.lead =
-        (best->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 6.0));
-    evidence.contrast = best->second.clear;
-    evidence.age = std::log(1.0 + best->second.age);
-    evidence.doubt = best->second.doubt;
+        (top->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 6.0));
+    evidence.contrast = top->second.clear;
+    evidence.age = std::log(1.0 + top->second.age);
+    evidence.doubt = top->second.doubt;
   }
 
   bool earlier_drives_;
+  bool localises_;
   double jumps_;
   int weighed_ = 0;
   std::map<std::size_t, Row> rows_;
   std::vector<Showed> showed_;
 };
 
+/// What a map's places are, and whether the drive is added to them.
+enum class Map : std::uint8_t { to_localise_in, of_earlier_drives, of_the_same_drive };
+
 void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vectors& query,
-                               Use use = Use::localise, double jumps = 0.0) {
+                               Map kind = Map::to_localise_in, double jumps = 0.0) {
   MatcherConfig config;
-  config.use = use;
+  config.use = kind == Map::to_localise_in ? Use::localise : Use::close_loops;
   config.standardisation.on = false;
   config.relocalising.rows_scanned = 150;
-  Seen seen(places, config);
+  Seen seen(places, config, kind == Map::of_earlier_drives ? places.size() : 0);
   PlaceBelief belief(seen.memory.arena, config);
-  NaiveBelief naive(use == Use::localise, jumps);
+  NaiveBelief naive(kind != Map::of_the_same_drive, kind == Map::to_localise_in, jumps);
   std::size_t judged = 0;
   for (const auto& descriptor : query) {
     const SceneView view = seen.take(descriptor);
@@ -282,6 +299,7 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
     ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);
     ASSERT_NEAR(e.doubt, naive.evidence.doubt, 1e-6);
+    ASSERT_NEAR(belief.remember(log_odds(e)), naive.best, 1e-3);
   }
   EXPECT_GT(judged, query.size() / 2);
 }
@@ -297,18 +315,22 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
 }
 
 TEST(PlaceBeliefOracle, AtHalfAndTwiceThePace) {
-  const oracle::Vectors known = test::way(1, 200, 0.5F, 1, size);
-  const oracle::Vectors way = test::way(1, 200, 0.5F, 2, size);
-  oracle::Vectors slow;
-  oracle::Vectors fast;
-  for (std::size_t i = 0; i < 200; ++i) {
-    slow.push_back(way[i / 2]);
-    if (i % 2 == 0) fast.push_back(way[i]);
-  }
-  for (const double jumps : {0.0, 0.02}) {
-    SCOPED_TRACE(jumps);
-    expect_like_the_naive_one(known, slow, Use::localise, jumps);
-    expect_like_the_naive_one(known, fast, Use::localise, jumps);
+  // As above: not the way 1 where the drive is added.
+  for (const auto& [seed, kind, jumps] : {std::tuple{1U, Map::to_localise_in, 0.0},
+                                          {1U, Map::to_localise_in, 0.02},
+                                          {4U, Map::of_earlier_drives, 0.0},
+                                          {5U, Map::of_earlier_drives, 0.0}}) {
+    SCOPED_TRACE(std::to_string(seed) + ", jumps " + std::to_string(jumps));
+    const oracle::Vectors known = test::way(seed, 200, 0.5F, 1, size);
+    const oracle::Vectors way = test::way(seed, 200, 0.5F, 2, size);
+    oracle::Vectors slow;
+    oracle::Vectors fast;
+    for (std::size_t i = 0; i < 200; ++i) {
+      slow.push_back(way[i / 2]);
+      if (i % 2 == 0) fast.push_back(way[i]);
+    }
+    expect_like_the_naive_one(known, slow, kind, jumps);
+    expect_like_the_naive_one(known, fast, kind, jumps);
   }
 }
 
@@ -318,7 +340,39 @@ TEST(PlaceBeliefOracle, OnASmallMap) {
 
 TEST(PlaceBeliefOracle, OnAWayOfTheSameDrive) {
   expect_like_the_naive_one(test::way(1, 200, 0.5F, 1, size), test::way(1, 200, 0.5F, 2, size),
-                            Use::close_loops);
+                            Map::of_the_same_drive);
+}
+
+TEST(PlaceBeliefOracle, OnAWayThatIsAddedToEarlierDrives) {
+  expect_like_the_naive_one(test::way(1, 200, 0.5F, 1, size), test::way(1, 200, 0.5F, 2, size),
+                            Map::of_earlier_drives);
+}
+
+/// What was known of a way is forgotten where the robot leaves it, unless it localises.
+TEST(PlaceBeliefOracle, OnAWayThatIsLeft) {
+  const oracle::Vectors way = test::way(1, 200, 0.5F, 2, size);
+  const oracle::Vectors other = test::way(3, 60, 0.5F, 1, size);
+  oracle::Vectors query(way.begin(), way.begin() + 100);
+  query.insert(query.end(), other.begin(), other.end());
+  for (const Map kind : {Map::to_localise_in, Map::of_earlier_drives, Map::of_the_same_drive}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    expect_like_the_naive_one(test::way(1, 200, 0.5F, 1, size), query, kind);
+  }
+}
+
+/// Fewer are too few to be believed.
+TEST(PlaceBeliefOracle, OfEarlierDrivesTwentyPlacesCount) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.standardisation.on = false;
+  const oracle::Vectors way = test::way(1, 60, 0.5F, 1, size);
+  for (const std::size_t earlier : {19U, 20U}) {
+    Seen seen(way, config, earlier);
+    PlaceBelief belief(seen.memory.arena, config);
+    static_cast<void>(belief.observe(seen.take(way.front()), 0.0));
+    ASSERT_TRUE(belief.likeliest());
+    EXPECT_EQ(belief.likeliest()->evidence.earlier_drives, earlier == 20U);
+  }
 }
 
 TEST(PlaceBeliefOracle, OnAnUnknownOne) {

@@ -14,11 +14,20 @@ struct Seen {
   QueryHistory queries;
   CandidateProposals proposals;
 
-  Seen(const oracle::Vectors& places, const MatcherConfig& with)
+  /// @param earlier so many of the places are an earlier drive's
+  Seen(const oracle::Vectors& places, const MatcherConfig& with, std::size_t earlier = 0)
       : config(with),
-        map(map_of(places, with)),
+        map(with, {places.size(), places.front().size(), earlier > 0 ? 2U : 1U}),
         queries(memory.arena, DescriptorForm(with, places.front().size()), 32),
-        proposals(memory.arena, with, places.size()) {}
+        proposals(memory.arena, with, places.size()) {
+    for (const auto& place : places) static_cast<void>(map.learn(place));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_TRUE(map.add(places[i]));
+      if (i + 1 == earlier) {
+        EXPECT_TRUE(map.begin_session());
+      }
+    }
+  }
 
   SceneView take(const std::vector<float>& descriptor) {
     queries.push(descriptor);

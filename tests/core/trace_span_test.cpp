@@ -17,15 +17,17 @@ namespace {
 /// Of all ways to come onto a trace, leave it and come back, the share that is on it at a frame:
 /// summed up from the first frame on for each of them.
 TEST(TraceSpan, IsTheSumOverAllWays) {
-  TestArena memory;
-  TraceSpan span(memory.arena, 40);
   std::mt19937 random(7);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  for (int round = 0; round < 50; ++round) {
+  for (int round = 0; round < 100; ++round) {
+    // A trace of a drive that closes loops does not end.
+    const bool loops = round >= 50;
+    TestArena memory;
+    TraceSpan span(memory.arena, loops ? Use::close_loops : Use::localise, 40);
     const std::size_t frames = 1 + random() % 40;
     const double before = round == 0 ? 0.0 : share();
     const double usual = share();
-    const double jumps = round % 3 == 0 ? 0.0 : 0.2 * share();
+    const double jumps = loops || round % 3 == 0 ? 0.0 : 0.2 * share();
     std::vector<BeliefTraces::Step> trace;
     // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
@@ -49,7 +51,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       return agreed == 0 ? usual : std::max(usual, part * gained / novelty);
     };
     std::vector<BeliefTraces::Step> less = trace;
-    TraceSpan::take_usual(less, agreed, born, usual, least);
+    span.take_usual(less, agreed, born, usual, least);
     const auto found = span.find(less, before, usual, least, jumps, asked);
     ASSERT_EQ(found.size(), asked);
     // How likely a frame is, in a state, after that of the frame before.
@@ -58,6 +60,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       const auto step = step_of(i);
       const double elsewhere = i < frames - born     ? at_least(0.5)
                                : i < frames - agreed ? at_least(0.9)
+                               : loops               ? at_least(0.6)
                                                      : usual;
       if (state == on) return std::exp(step.gain - elsewhere * std::max(step.novelty, least));
       // Half as much is usual where it was left.
@@ -66,7 +69,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     const auto moves = [&](std::size_t i, State from, State to) {
       if (i == 0) return from == to ? 1.0 : 0.0;
       const double begins = is_cut(i) ? 0.9 : 0.01;
-      const double ends = is_cut(i) ? 0.95 : 0.001 + jumps;
+      const double ends = loops ? 0.0 : is_cut(i) ? 0.95 : 0.001 + jumps;
       const std::array<std::array<double, 3>, 3> chances{
           {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
       return chances[from][to];
@@ -89,7 +92,8 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
         ways = next;
       }
       // That it is left with the frame to come, at the latest.
-      return Likely{ways[fresh] + ways[on] + ways[gone], (0.001 + jumps) * ways[on] + ways[gone]};
+      const double left = loops ? 1.0 : 0.001 + jumps;
+      return Likely{ways[fresh] + ways[on] + ways[gone], left * ways[on] + ways[gone]};
     };
     const Likely all = likely(frames);
     for (std::size_t i = frames - asked; i < frames; ++i) {
@@ -103,7 +107,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
 /// A robot that was carried away, and put back further along the trace.
 TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
   TestArena memory;
-  TraceSpan span(memory.arena, 80);
+  TraceSpan span(memory.arena, Use::localise, 80);
   for (const double gain : {-0.1, -1.0}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
@@ -119,7 +123,7 @@ TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
 
 TEST(TraceSpan, BeginsAndEndsWithACut) {
   TestArena memory;
-  TraceSpan span(memory.arena, 40);
+  TraceSpan span(memory.arena, Use::localise, 40);
   // On the trace between the cuts at frames 10 and 20, newest first.
   std::vector<BeliefTraces::Step> trace;
   for (std::size_t i = 0; i < 30; ++i) {
@@ -140,7 +144,7 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
 
 TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
   TestArena memory;
-  TraceSpan span(memory.arena, 40);
+  TraceSpan span(memory.arena, Use::localise, 40);
   for (const double gain : {0.15, 0.95}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
@@ -148,9 +152,9 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
     constexpr double usual = 0.1;
     constexpr double least = 0.25;
     std::vector<BeliefTraces::Step> all = trace;
-    TraceSpan::take_usual(all, 30, 30, usual, least);
+    span.take_usual(all, 30, 30, usual, least);
     EXPECT_GT(span.find(all, 0.0, usual, least, 0.0, 30)[29].still, 0.5);
-    TraceSpan::take_usual(trace, 20, 30, usual, least);
+    span.take_usual(trace, 20, 30, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[25].still > 0.5, gain > 0.5);
     EXPECT_GT(span.find(trace, 0.0, usual, least, 0.0, 30)[15].still, 0.99);
   }
@@ -158,14 +162,14 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
 
 TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
   TestArena memory;
-  TraceSpan span(memory.arena, 40);
+  TraceSpan span(memory.arena, Use::localise, 40);
   for (const double gain : {-0.2, 0.6}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
     trace.resize(30, {0, gain, 0.5, 0.5});
     constexpr double usual = 0.1;
     constexpr double least = 0.25;
-    TraceSpan::take_usual(trace, 20, 20, usual, least);
+    span.take_usual(trace, 20, 20, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[29].still > 0.5, gain > 0.0);
   }
 }
@@ -174,21 +178,41 @@ TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
 /// one row, so less speaks against having left it late.
 TEST(TraceSpan, LastsWhereAFrameGainsLessThanIsUsualButMoreThanOneRowDoes) {
   TestArena memory;
-  TraceSpan span(memory.arena, 60);
+  TraceSpan span(memory.arena, Use::localise, 60);
   constexpr double usual = 1.0;
   constexpr double least = 0.1;
   for (const double gain : {-0.15, 0.05}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, gain, 0.5, 0.5});
     trace.resize(50, {0, 1.0, 0.5, 0.5});
-    TraceSpan::take_usual(trace, 50, 50, usual, least);
+    span.take_usual(trace, 50, 50, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 50)[0].still > 0.5, gain > 0.0);
+  }
+}
+
+/// Where a revisit begins the frames look as much alike as later on, so those that do less were
+/// seen on the way there. Where it ends they do not.
+TEST(TraceSpan, ClosingLoopsFirstFramesHaveToGainMoreThanHalfAsMuch) {
+  TestArena memory;
+  TraceSpan span(memory.arena, Use::close_loops, 60);
+  constexpr double usual = 0.1;
+  constexpr double least = 0.25;
+  for (const double gain : {0.1, 0.9}) {
+    SCOPED_TRACE(gain);
+    std::vector<BeliefTraces::Step> begins(30, {0, 1.0, 0.5, 0.5});
+    begins.resize(50, {0, gain, 0.5, 0.5});
+    span.take_usual(begins, 50, 50, usual, least);
+    EXPECT_EQ(span.find(begins, 0.0, usual, least, 0.0, 50)[45].still > 0.5, gain > 0.5);
+    std::vector<BeliefTraces::Step> ends(20, {0, gain, 0.5, 0.5});
+    ends.resize(50, {0, 1.0, 0.5, 0.5});
+    span.take_usual(ends, 50, 50, usual, least);
+    EXPECT_GT(span.find(ends, 0.0, usual, least, 0.0, 50)[5].still, 0.99);
   }
 }
 
 TEST(TraceSpan, NoTraceIsTooLong) {
   TestArena memory;
-  TraceSpan span(memory.arena, 1001);
+  TraceSpan span(memory.arena, Use::localise, 1001);
   for (const double gain : {1.9, -1.9, 0.0}) {
     const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5, 0.5});
     for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, 0.0, trace.size())) {

@@ -6,16 +6,20 @@
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/belief_traces.hpp"
+#include "seqloop/matcher_config.hpp"
 
 namespace seqloop {
 
 /// On which frames of a trace the robot was on it: it may have come onto the map later than the
 /// trace says, have left it already, or have been elsewhere in between. A smoother, forward and
-/// backward, over three states. Source: src/README.md, section 6.6.
+/// backward, over three states. In a drive that closes loops traces do not end: its revisits do,
+/// all of them, and their last frames look like what wrong rows see. What ends such a trace is the
+/// doubt (`PlaceBelief::remember`). Source: src/README.md, section 6.6.
 class TraceSpan {
  public:
+  /// @param use  whether the drive closes loops
   /// @param most frames of a trace. Allocates: from the arena only.
-  TraceSpan(Arena& arena, std::size_t most);
+  TraceSpan(Arena& arena, Use use, std::size_t most);
 
   /// Probabilities that a frame lies on the trace, if the trace is right.
   struct On {
@@ -27,7 +31,8 @@ class TraceSpan {
   /// Takes what frames gain elsewhere from what they gain on a trace.
   /// @param trace  the newest frame first
   /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace,
-  ///               0 to all. Before them the robot may have been elsewhere, and where roads meet,
+  ///               0 to all. In a drive that closes loops they have to gain .6 of what they gain
+  ///               on average. Before them the robot may have been elsewhere, and where roads meet,
   ///               the frames that lead there look alike: such a frame has to gain nearly as much
   ///               as those since
   /// @param born   frames, from the newest on, since the trace was born, `agreed` to all. Before
@@ -35,8 +40,8 @@ class TraceSpan {
   ///               the map: such a frame has to gain half as much
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
-  static void take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
-                         double usual, double least) noexcept;
+  void take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
+                  double usual, double least) const noexcept;
 
   /// @param trace  the newest frame first; at most `most`. Its gains are less what is usual
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
@@ -60,6 +65,7 @@ class TraceSpan {
     double gone_likelier;  // the frame, after the trace than before it
   };
 
+  bool ends_;                   // whether traces do
   std::span<Forward> forward_;  // [most]
   std::span<On> on_;            // [most]
 };
