@@ -406,6 +406,7 @@ void Detector::restart() noexcept {
   proposals_.restart();
   decision_.restart();
   belief_.restart();
+  pending_.restart();
   change_degree_ = {};
 }
 

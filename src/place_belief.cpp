@@ -126,7 +126,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   give_birth(view, each);
   hand_over(*view.map);
   weigh(view, *scene);
-  judge(view, *scene);
+  judge(view, *scene, earlier_drives);
   return sketches_;
 }
 
@@ -351,7 +351,7 @@ void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
   for (std::size_t i = 0; i < count_; ++i) rows_[i].mass = result[i];
 }
 
-void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
+void PlaceBelief::judge(const SceneView& view, const Scene& scene, bool earlier_drives) noexcept {
   const std::span<Hypothesis> rows = rows_.first(count_);
   const auto top = std::ranges::max_element(rows, {}, &Hypothesis::mass);
   if (top == rows.end()) {
@@ -392,7 +392,6 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene) noexcept {
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   // Less than that says no more.
   constexpr double least_new = 1e-4;
-  const bool earlier_drives = has_earlier_drives(view);
   const double varies = earlier_drives ? least_variance : least_variance_of_new_places;
   likeliest_ = Likeliest{top->row,
                          index,

@@ -312,15 +312,17 @@ TEST(PlaceBelief, WeighsEvidenceByWhatTheMapIsOf) {
              .age = 2.0,
              .margin = 0.1,
              .doubt = 1.5};
-  EXPECT_NEAR(log_odds_followed(e),
-              -5.879 + 0.104 * 3.0 + 0.89 * 4.0 + 1.094 * 0.5 + 0.808 * 2.0 + 8.984 * 0.1, 1e-12);
+  const double followed =
+      -5.879 + 0.104 * 3.0 + 0.89 * 4.0 + 1.094 * 0.5 + 0.808 * 2.0 + 8.984 * 0.1;
+  EXPECT_NEAR(log_odds_followed(e), followed, 1e-12);
   const double alone = 1.116 * 5.0 + 7.5 * 0.1 - 0.9 * 1.5;
   EXPECT_NEAR(log_odds_alone(e), -4.2 + alone, 1e-12);
   e.earlier_drives = true;
+  EXPECT_NEAR(log_odds_followed(e), followed, 1e-12);
   EXPECT_NEAR(log_odds_alone(e), -3.25 + alone, 1e-12);
 }
 
-TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeRead) {
+TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeReadOrADriveThatHasEnded) {
   const oracle::Vectors drive = way(15, 100, 0.5F, 1);
   const MatcherConfig config = settings(Use::localise);
   PlaceMap map = map_of(drive, config);
@@ -328,6 +330,10 @@ TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeRead) {
   for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
   EXPECT_TRUE(detector.evidence());
   static_cast<void>(detector.step(std::vector<float>(size, std::nanf(""))));
+  EXPECT_FALSE(detector.evidence());
+  static_cast<void>(detector.step(drive.back()));
+  EXPECT_TRUE(detector.evidence());
+  static_cast<void>(detector.finish());
   EXPECT_FALSE(detector.evidence());
 }
 

@@ -47,6 +47,9 @@ class PendingAnswers {
     return static_cast<double>(probability) >= least_;
   }
 
+  /// The newest frame is not, or no longer, what was judged.
+  void restart() noexcept { evidence_.reset(); }
+
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;
 

@@ -139,8 +139,8 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
        "weigh features by their running statistics [on; off under --paper and for seqslam]",
        [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
   options.count("standardise-prior", config.standardisation.prior_frames,
-                "frames that what a drive starts from counts for; a third where nothing is added "
-                "to the map [15]");
+                "frames that what a drive starts from counts for, if something is known; a third "
+                "where nothing is added to the map [15]");
   options.count("standardise-horizon", config.standardisation.horizon,
                 "frames after which statistics have mostly moved on [30]");
   options.add({"keyframes", ValueKind::on_off,
