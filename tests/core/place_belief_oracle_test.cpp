@@ -183,8 +183,10 @@ class NaiveBelief {
     // 6.4, `best`
     const double here = log_odds(evidence);
     double& past = rows_.at(likeliest).past;
-    const bool left = !localises_ && evidence.doubt > 2.0;
-    past = left ? here : std::max(past - 0.1 * w, here);
+    if (!localises_ && evidence.doubt > 3.0) {
+      for (auto& [row, at] : rows_) at.past = std::min(at.past, here);
+    }
+    past = std::max(past - 0.1 * w, here);
     best = past;
   }
 

@@ -70,8 +70,9 @@ class PlaceBelief {
   [[nodiscard]] const std::optional<Likeliest>& likeliest() const noexcept { return likeliest_; }
 
   /// Remembers the log-odds of the likeliest row. @return the best on the way there, fading. In a
-  /// drive that closes loops the best starts anew where the newest frames raise much doubt: the
-  /// robot has left the road that it came along, and what was known there says nothing of the next.
+  /// drive that closes loops the best of all rows starts anew where the newest frames raise much
+  /// doubt: the robot has left the road that it came along, and what was known there says nothing
+  /// of the next.
   double remember(double odds) noexcept;
 
   /// That the robot is somewhere new, 0 .. 1.
