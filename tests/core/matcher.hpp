@@ -32,11 +32,21 @@ inline MatcherConfig paper(Candidates candidates, std::size_t ds, Use use = Use:
   return config;
 }
 
+/// @param earlier so many of the places are a session of their own, if there are any
+inline void fill(PlaceMap& map, const oracle::Vectors& places, std::size_t earlier = 0) {
+  for (const auto& place : places) static_cast<void>(map.learn(place));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_TRUE(map.add(places[i]));
+    if (i + 1 == earlier) {
+      EXPECT_TRUE(map.begin_session());
+    }
+  }
+}
+
 /// A map that holds a whole drive: as it came, unless the configuration standardises.
 inline PlaceMap map_of(const oracle::Vectors& places, const MatcherConfig& config) {
   PlaceMap map(config, {places.size(), places.front().size()});
-  for (const auto& place : places) static_cast<void>(map.learn(place));
-  for (const auto& place : places) EXPECT_TRUE(map.add(place));
+  fill(map, places);
   return map;
 }
 

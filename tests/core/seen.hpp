@@ -20,13 +20,7 @@ struct Seen {
         map(with, {places.size(), places.front().size(), earlier > 0 ? 2U : 1U}),
         queries(memory.arena, DescriptorForm(with, places.front().size()), 32),
         proposals(memory.arena, with, places.size()) {
-    for (const auto& place : places) static_cast<void>(map.learn(place));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      EXPECT_TRUE(map.add(places[i]));
-      if (i + 1 == earlier) {
-        EXPECT_TRUE(map.begin_session());
-      }
-    }
+    fill(map, places, earlier);
   }
 
   SceneView take(const std::vector<float>& descriptor) {

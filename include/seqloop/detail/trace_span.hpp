@@ -12,9 +12,9 @@ namespace seqloop {
 
 /// On which frames of a trace the robot was on it: it may have come onto the map later than the
 /// trace says, have left it already, or have been elsewhere in between. A smoother, forward and
-/// backward, over three states. In a drive that closes loops traces do not end: its revisits do,
-/// all of them, and their last frames look like what wrong rows see. What ends such a trace is the
-/// doubt (`PlaceBelief::remember`). Source: src/README.md, section 6.6.
+/// backward, over three states. In a drive that closes loops no trace ends here: the last frames
+/// of any revisit look like what wrong rows see, so that they tell no end. The doubt does
+/// (`PlaceBelief::remember`). Source: src/README.md, section 6.6.
 class TraceSpan {
  public:
   /// @param use  whether the drive closes loops
