@@ -38,7 +38,7 @@ void JumpRate::take(const PlaceMap& map, std::uint64_t frame, std::size_t row,
 
 double JumpRate::chance() const noexcept {
   constexpr double without = 300.0;  // answers without a jump that every drive is credited with
-  constexpr double more = 8.0;
+  constexpr double more = 14.0;
   const double rate = static_cast<double>(jumps_) / (without + static_cast<double>(answers_));
   return std::min(0.5, more * rate);
 }

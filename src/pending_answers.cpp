@@ -255,13 +255,23 @@ bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waitin
   return false;
 }
 
+/// Whether a whole window after a frame went on along the trace, and the frame's own window goes
+/// along it better than elsewhere: much better, if the trace begins in that window.
+bool PendingAnswers::is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept {
+  constexpr double much = 0.1;
+  if (waiting.lag <= 2 * after_centre_ || waiting.lines == 0) return false;
+  const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : much;
+  return margin(map, slot_of(waiting.frame), waiting.row) >= least;
+}
+
 /// What is told of a frame, before it is calibrated.
 double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcept {
   const double is_there = probability(waiting);
   if (is_there <= most_in_doubt) return is_there;
   if (is_beside_a_jump(map, waiting)) return most_in_doubt;
   const double if_carried = waiting.right * waiting.carried.where(waiting.left);
-  return std::min(is_there, std::max(most_in_doubt, if_carried));
+  if (if_carried >= is_there || is_borne_out(map, waiting)) return is_there;
+  return std::max(most_in_doubt, if_carried);
 }
 
 void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,

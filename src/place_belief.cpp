@@ -19,7 +19,7 @@ constexpr double coming = 0.001;
 constexpr double small_map = 200.0;
 
 // A robot that is switched on, and has a map of earlier drives, is likelier on it than one that has
-// just left it.
+// just left it; so is one that is carried from place to place.
 constexpr double coming_at_first = 0.1;
 
 // How much the best wrong sums vary at least. A drive through new places has wrong rows in store
@@ -111,7 +111,8 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const bool earlier_drives = has_earlier_drives(view);
   if (earlier_drives) first_frames_.take(view, *scene);
   const bool begins = weighed_++ < FirstFrames::most;
-  const double comes = (begins && earlier_drives ? coming_at_first : coming) *
+  const double rarely = begins && earlier_drives ? coming_at_first : coming;
+  const double comes = std::max(rarely, std::min(coming_at_first, jumps)) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
   const double each = born / static_cast<double>(view.seen->scanned().bits.size());
@@ -126,7 +127,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   give_birth(view, each);
   hand_over(*view.map);
   weigh(view, *scene);
-  judge(view, *scene, earlier_drives);
+  judge(view, *scene, jumps, earlier_drives);
   return sketches_;
 }
 
@@ -351,7 +352,8 @@ void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
   for (std::size_t i = 0; i < count_; ++i) rows_[i].mass = result[i];
 }
 
-void PlaceBelief::judge(const SceneView& view, const Scene& scene, bool earlier_drives) noexcept {
+void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps,
+                        bool earlier_drives) noexcept {
   const std::span<Hypothesis> rows = rows_.first(count_);
   const auto top = std::ranges::max_element(rows, {}, &Hypothesis::mass);
   if (top == rows.end()) {
@@ -401,6 +403,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, bool earlier_
                           .contrast = top->contrast,
                           .age = logarithm(1.0 + top->age),
                           .doubt = top->doubt,
+                          .jumps = jumps,
                           .earlier_drives = earlier_drives}};
 }
 

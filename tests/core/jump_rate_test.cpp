@@ -41,15 +41,15 @@ TEST(JumpRate, IsNoneWhereEachAnswerLeadsOnToTheNext) {
   EXPECT_EQ(rate.chance(), 0.0);
 }
 
-TEST(JumpRate, IsEightTimesTheJumpsPerAnswerAndThreeHundred) {
+TEST(JumpRate, IsFourteenTimesTheJumpsPerAnswerAndThreeHundred) {
   const PlaceMap map = map_of({400});
   JumpRate rate;
   EXPECT_EQ(rate.chance(), 0.0);
   rate.take(map, 0, 100, all_belong);
   rate.take(map, 1, 123, all_belong);  // two on, and more than twenty off
-  EXPECT_DOUBLE_EQ(rate.chance(), 8.0 * 1.0 / 302.0);
+  EXPECT_DOUBLE_EQ(rate.chance(), 14.0 * 1.0 / 302.0);
   rate.take(map, 2, 102, all_belong);  // back by more than twenty
-  EXPECT_DOUBLE_EQ(rate.chance(), 8.0 * 2.0 / 303.0);
+  EXPECT_DOUBLE_EQ(rate.chance(), 14.0 * 2.0 / 303.0);
   for (std::uint64_t frame = 3; frame < 200; ++frame) {
     rate.take(map, frame, frame % 2 == 0 ? 10 : 300, all_belong);
   }

@@ -112,7 +112,7 @@ class NaiveBelief {
     }
     // 6.3, what comes
     const bool begins = weighed_++ < 20;
-    const double coming = (begins && earlier_drives_ ? 0.1 : 0.001) *
+    const double coming = std::max(begins && earlier_drives_ ? 0.1 : 0.001, std::min(0.1, jumps_)) *
                           std::min(1.0, static_cast<double>(view.rows) / 200.0);
     const double born = coming * std::min(1.0, 4.0 * w) * new_place;
     if (!earlier_drives_) {
@@ -255,6 +255,7 @@ class NaiveBelief {
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
     evidence.earlier_drives = earlier_drives_;
+    evidence.jumps = jumps_;
     evidence.odds = std::log(big / (1.0 - big));
     evidence.known = -std::log(1e-4 + new_place);
     evidence.lead =
@@ -298,6 +299,7 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     const Evidence& e = belief.likeliest()->evidence;
     ASSERT_EQ(belief.likeliest()->row, naive.likeliest);
     ASSERT_EQ(e.earlier_drives, naive.evidence.earlier_drives);
+    ASSERT_EQ(e.jumps, naive.evidence.jumps);
     ASSERT_NEAR(e.odds, naive.evidence.odds, 1e-3);
     ASSERT_NEAR(e.known, naive.evidence.known, 1e-6);
     ASSERT_NEAR(e.lead, naive.evidence.lead, 1e-6);
@@ -320,9 +322,11 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
 }
 
 TEST(PlaceBeliefOracle, AtHalfAndTwiceThePace) {
-  // As above: not the way 1 where the drive is added.
+  // As above: not the way 1 where the drive is added, nor 1, 4 and 6 after jumps, where more rows
+  // are found.
   for (const auto& [seed, kind, jumps] : {std::tuple{1U, Map::to_localise_in, 0.0},
-                                          {1U, Map::to_localise_in, 0.02},
+                                          {5U, Map::to_localise_in, 0.02},
+                                          {5U, Map::to_localise_in, 0.3},
                                           {4U, Map::of_earlier_drives, 0.0},
                                           {5U, Map::of_earlier_drives, 0.0}}) {
     SCOPED_TRACE(std::to_string(seed) + ", jumps " + std::to_string(jumps));

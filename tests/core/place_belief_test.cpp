@@ -303,6 +303,15 @@ TEST(PlaceBelief, AShortTraceSufficesWhereNothingElseIsLeft) {
   EXPECT_GT(log_odds(e), 3.5);
 }
 
+TEST(PlaceBelief, LessSufficesTheOftenerTheRobotWasCarriedAboutOnTheMap) {
+  Evidence e{.odds = 3.0, .known = 5.0, .lead = 4.0, .contrast = 0.5, .age = 2.0};
+  const double never = log_odds(e);
+  for (const auto& [jumps, more] : {std::pair{0.01, 0.1}, {0.15, 1.5}, {0.2, 2.0}, {0.5, 2.0}}) {
+    e.jumps = jumps;
+    EXPECT_NEAR(log_odds(e), never + more, 1e-12) << jumps;
+  }
+}
+
 // Section 6.4, number by number.
 TEST(PlaceBelief, WeighsEvidenceByWhatTheMapIsOf) {
   Evidence e{.odds = 3.0,

@@ -15,6 +15,7 @@ struct Evidence {
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
+  double jumps = 0.0;     ///< how likely the robot was carried away with a frame, 0 .. .5
   bool earlier_drives = false;  ///< whether the map has places of earlier drives
 };
 
@@ -34,9 +35,12 @@ struct Evidence {
   return constant + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
 }
 
-/// The log-odds that the row is right: either suffices.
+/// The log-odds that the row is right: either suffices. A robot that has been carried about on this
+/// map, and was found again and again, is hardly on another that looks like it.
 [[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
-  return std::max(log_odds_followed(e), log_odds_alone(e));
+  constexpr double most = 2.0;
+  const double carried_about = std::min(most, 10.0 * e.jumps);
+  return std::max(log_odds_followed(e), log_odds_alone(e)) + carried_about;
 }
 
 /// The log-odds that the robot is there still, and was not carried away with the newest frames.

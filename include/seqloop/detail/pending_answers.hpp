@@ -138,6 +138,7 @@ class PendingAnswers {
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept;
+  [[nodiscard]] bool is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
