@@ -390,6 +390,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
   newest_was_seen_ = false;
+  pending_.nothing_is_judged();
   ranges_.skip(map_->order(), steps);
   proposals_.skip(map_->order(), steps);
   decision_.skip(steps);
@@ -406,7 +407,7 @@ void Detector::restart() noexcept {
   proposals_.restart();
   decision_.restart();
   belief_.restart();
-  pending_.restart();
+  pending_.nothing_is_judged();
   change_degree_ = {};
 }
 

@@ -27,10 +27,9 @@ constexpr double coming_at_first = 0.1;
 constexpr double least_variance = 1.25;
 constexpr double least_variance_of_new_places = 6.0;
 
-// How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows,
-// and where it does a row that soon slows down stays with what looks a little like them. And the
-// chance of a jump from which on rows that go on at another pace than the robot are likelier to be
-// of another place.
+// How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows:
+// a hypothesis that slowed down quickly would linger beside the road. And the chance of a jump from
+// which on rows that go on at another pace than the robot are likelier to be of another place.
 constexpr double last_move = 0.1;
 constexpr double last_move_of_a_drive_that_is_added = 0.02;
 constexpr double jumps_often = 0.01;
@@ -442,7 +441,7 @@ double PlaceBelief::usual_gain() const noexcept {
 
 double PlaceBelief::remember(double odds) noexcept {
   constexpr double fading = 0.1;
-  constexpr double too_much = 3.0;
+  constexpr double too_much = 3.5;
   // Other visits of the place have had it from this row.
   if (!localises_ && likeliest_->evidence.doubt > too_much) {
     for (Hypothesis& at : rows_.first(count_)) at.past = std::min(at.past, odds);

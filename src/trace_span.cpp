@@ -14,7 +14,8 @@ struct Chances {
   double begins;
   double ends;
 };
-constexpr Chances usual_chances{0.01, 0.001};
+constexpr Chances localising{0.01, 0.001};
+constexpr Chances closing_loops{0.001, 0.0};
 
 /// The chance that a robot which has left the trace is on it again with a frame. It is small: the
 /// frames in between have to say much against the trace.
@@ -24,15 +25,13 @@ constexpr double returns = 1e-5;
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
 /// none.
 /// @param least half of what is new of this drive's frames
-/// @param jumps added to the chance of an end
-/// @param ends  whether traces end
-Chances chances_of(double change, double least, double jumps, bool ends) {
+/// @param usual of frames that are no cuts
+Chances chances_of(double change, double least, const Chances& usual) {
   constexpr double all = 0.6;
   constexpr double goes_on = 0.15;
   const bool cut = change > all && least < goes_on;
-  const double begins = cut ? 0.9 : usual_chances.begins;
-  if (!ends) return {begins, 0.0};
-  return {begins, cut ? 0.95 : usual_chances.ends + jumps};
+  if (!cut) return usual;
+  return {0.9, usual.ends > 0.0 ? 0.95 : 0.0};
 }
 
 /// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
@@ -92,7 +91,7 @@ struct Backward {
 }  // namespace
 
 TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
-    : ends_(use == Use::localise),
+    : localises_(use == Use::localise),
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
@@ -100,7 +99,7 @@ void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agre
                            std::size_t born, double usual, double least) const noexcept {
   constexpr double nearly = 0.9;
   constexpr double half = 0.5;
-  const double since_agreed = ends_ ? 0.0 : 0.6;
+  const double since_agreed = localises_ ? 0.0 : 0.7;
   const double gained = gain_by_novelty(trace.first(agreed), least);
   for (std::size_t back = 0; back < trace.size(); ++back) {
     BeliefTraces::Step& step = trace[back];
@@ -113,13 +112,16 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
                                                double before, double usual, double least,
                                                double jumps, std::size_t asked) noexcept {
   constexpr double forgotten = 10.0;
+  constexpr double least_share = 1e-200;  // so that there is something to divide by
+  const Chances usual_chances =
+      localises_ ? Chances{localising.begins, localising.ends + jumps} : closing_loops;
   double fresh = std::max(1.0 - before, std::min(1.0, forgotten * jumps));
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain);
-    const Chances chances = chances_of(step.change, least, jumps, ends_);
+    const Chances chances = chances_of(step.change, least, usual_chances);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
       const double comes_back = gone * returns;
@@ -131,14 +133,14 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     const double gone_likelier = likelier_when_gone(usual, step.novelty);
     gone *= gone_likelier;
     if (const double sum = fresh + on + gone; is_far(sum)) {
-      fresh /= sum;
+      fresh = std::max(fresh / sum, least_share);
       on /= sum;
       gone /= sum;
     }
     forward_[back] = {fresh, on, gone, likelier, gone_likelier};
   }
-  // Where no trace ends, one that was left has been left since the newest frame.
-  Backward after{.on = {1.0, ends_ ? usual_chances.ends + jumps : 1.0}};
+  // Where no trace ends, one that was left was left after the newest frame only.
+  Backward after{.on = {1.0, localises_ ? usual_chances.ends : 1.0}};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     Pair share;
@@ -148,7 +150,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     }
     on_[back] = {share[0], share[1]};
     after.step(here.likelier, here.gone_likelier,
-               chances_of(trace[back].change, least, jumps, ends_));
+               chances_of(trace[back].change, least, usual_chances));
   }
   return on_.first(asked);
 }

@@ -24,9 +24,18 @@ TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
 }
 
 TEST(Calibration, SaysWhatWasRight) {
-  EXPECT_NEAR(log_odds(calibrated(of_odds(-1.4))), -0.5, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(1.5))), 0.3, 1e-9);
-  EXPECT_NEAR(log_odds(calibrated(of_odds(-5.6))), -1.25 - 0.31, 1e-9);
+  // Section 6.6, below it, and between.
+  for (const auto& [given, right] : {std::pair{-5.6, -1.25 - 0.31},
+                                     {-4.6, -1.25},
+                                     {-1.4, -0.5},
+                                     {-0.3, -0.42},
+                                     {0.8, 0.0},
+                                     {1.5, 0.3},
+                                     {2.2, 0.6},
+                                     {2.92, 1.6},
+                                     {2.944, 2.944}}) {
+    EXPECT_NEAR(log_odds(calibrated(of_odds(given))), right, 1e-9) << given;
+  }
 }
 
 TEST(Calibration, LeavesWhatIsAccepted) {

@@ -114,6 +114,39 @@ TEST(PlaceBelief, InventsNothingWhereNoPlaceComesTwice) {
   }
 }
 
+/// A revisit, and then another road, whose view is at first a little of that along the old one.
+TEST(PlaceBelief, AnswersARevisitToItsEndAndNotMuchFurther) {
+  constexpr float noise = 4.0F;
+  constexpr std::size_t comes = 400;
+  constexpr std::size_t leaves = 500;
+  std::size_t before = 0;
+  std::size_t last = 0;    // of the last 20 frames
+  std::size_t behind = 0;  // later than 20 frames after it
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const oracle::Vectors again = way(seed, 350, noise, 2);
+    const oracle::Vectors other = way(seed + 50, 150, noise, 1);
+    oracle::Vectors drive = way(seed, 400, noise, 1);
+    drive.insert(drive.end(), again.begin() + 100, again.begin() + 200);
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      const float old = 0.3F * std::max(0.0F, 1.0F - static_cast<float>(i) / 100.0F);
+      drive.push_back(other[i]);
+      for (std::size_t d = 0; d < size; ++d) {
+        drive.back()[d] += old * (again[200 + i][d] - other[i][d]);
+      }
+    }
+    for (const Answer& answer :
+         drive_through({}, unit(drive), settings(Use::close_loops)).answers) {
+      if (answer.gate != Gate::match) continue;
+      before += static_cast<std::size_t>(answer.frame < comes);
+      last += static_cast<std::size_t>(answer.frame + 20 >= leaves && answer.frame < leaves);
+      behind += static_cast<std::size_t>(answer.frame >= leaves + 20);
+    }
+  }
+  EXPECT_LE(before, 16U);
+  EXPECT_EQ(last, 6U * 20U);
+  EXPECT_EQ(behind, 0U);
+}
+
 void expect_found_lap_after_lap(std::uint32_t frames) {
   oracle::Vectors laps;
   for (std::uint32_t lap = 0; lap < 6; ++lap) {
@@ -331,7 +364,7 @@ TEST(PlaceBelief, WeighsEvidenceByWhatTheMapIsOf) {
   EXPECT_NEAR(log_odds_alone(e), -3.25 + alone, 1e-12);
 }
 
-TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeReadOrADriveThatHasEnded) {
+TEST(PlaceBelief, NothingSpeaksForAFrameThatWasNotSeenOrADriveThatHasEnded) {
   const oracle::Vectors drive = way(15, 100, 0.5F, 1);
   const MatcherConfig config = settings(Use::localise);
   PlaceMap map = map_of(drive, config);
@@ -342,6 +375,12 @@ TEST(PlaceBelief, NothingSpeaksForAFrameThatCannotBeReadOrADriveThatHasEnded) {
   EXPECT_FALSE(detector.evidence());
   static_cast<void>(detector.step(drive.back()));
   EXPECT_TRUE(detector.evidence());
+  for (const std::uint64_t frames : {5U, 100U}) {
+    detector.skip(frames);
+    EXPECT_FALSE(detector.evidence()) << frames;
+    for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+    EXPECT_TRUE(detector.evidence()) << frames;
+  }
   static_cast<void>(detector.finish());
   EXPECT_FALSE(detector.evidence());
 }

@@ -60,7 +60,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       const auto step = step_of(i);
       const double elsewhere = i < frames - born     ? at_least(0.5)
                                : i < frames - agreed ? at_least(0.9)
-                               : loops               ? at_least(0.6)
+                               : loops               ? at_least(0.7)
                                                      : usual;
       if (state == on) return std::exp(step.gain - elsewhere * std::max(step.novelty, least));
       // Half as much is usual where it was left.
@@ -68,7 +68,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     };
     const auto moves = [&](std::size_t i, State from, State to) {
       if (i == 0) return from == to ? 1.0 : 0.0;
-      const double begins = is_cut(i) ? 0.9 : 0.01;
+      const double begins = is_cut(i) ? 0.9 : loops ? 0.001 : 0.01;
       const double ends = loops ? 0.0 : is_cut(i) ? 0.95 : 0.001 + jumps;
       const std::array<std::array<double, 3>, 3> chances{
           {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
@@ -211,13 +211,19 @@ TEST(TraceSpan, ClosingLoopsFirstFramesHaveToGainMoreThanHalfAsMuch) {
 }
 
 TEST(TraceSpan, NoTraceIsTooLong) {
-  TestArena memory;
-  TraceSpan span(memory.arena, Use::localise, 1001);
-  for (const double gain : {1.9, -1.9, 0.0}) {
-    const std::vector<BeliefTraces::Step> trace(1001, {0, gain - 0.05, 0.5, 0.5});
-    for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, 0.0, trace.size())) {
-      EXPECT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
-      EXPECT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    TestArena memory;
+    TraceSpan span(memory.arena, use, 1001);
+    // Of the older half of the frames, and of the newer one.
+    for (const auto& [older, newer] :
+         {std::pair{1.9, 1.9}, {-1.9, -1.9}, {0.0, 0.0}, {1.9, -1.9}, {-1.9, 1.9}}) {
+      SCOPED_TRACE(std::to_string(older) + ", " + std::to_string(newer));
+      std::vector<BeliefTraces::Step> trace(1001, {0, older - 0.05, 0.5, 0.5});
+      for (std::size_t i = 0; i < 500; ++i) trace[i].gain = newer - 0.05;
+      for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, 0.0, trace.size())) {
+        ASSERT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
+        ASSERT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+      }
     }
   }
 }

@@ -48,7 +48,7 @@ class PendingAnswers {
   }
 
   /// The newest frame is not, or no longer, what was judged.
-  void restart() noexcept { evidence_.reset(); }
+  void nothing_is_judged() noexcept { evidence_.reset(); }
 
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;

@@ -31,7 +31,7 @@ class TraceSpan {
   /// Takes what frames gain elsewhere from what they gain on a trace.
   /// @param trace  the newest frame first
   /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace,
-  ///               0 to all. In a drive that closes loops they have to gain .6 of what they gain
+  ///               0 to all. In a drive that closes loops each has to gain .7 of what they gain
   ///               on average. Before them the robot may have been elsewhere, and where roads meet,
   ///               the frames that lead there look alike: such a frame has to gain nearly as much
   ///               as those since
@@ -65,7 +65,7 @@ class TraceSpan {
     double gone_likelier;  // the frame, after the trace than before it
   };
 
-  bool ends_;                   // whether traces do
+  bool localises_;              // if not, no trace ends
   std::span<Forward> forward_;  // [most]
   std::span<On> on_;            // [most]
 };

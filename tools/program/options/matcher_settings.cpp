@@ -138,9 +138,10 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
       {"standardise", ValueKind::on_off,
        "weigh features by their running statistics [on; off under --paper and for seqslam]",
        [&settings](std::string_view value) { settings.standardise = parse_on_off(value); }});
-  options.count("standardise-prior", config.standardisation.prior_frames,
-                "frames that what a drive starts from counts for, if something is known; a third "
-                "where nothing is added to the map [15]");
+  options.count(
+      "standardise-prior", config.standardisation.prior_frames,
+      "weight, in frames, of what a drive starts from; of a map that nothing is added to, "
+      "a third [15]");
   options.count("standardise-horizon", config.standardisation.horizon,
                 "frames after which statistics have mostly moved on [30]");
   options.add({"keyframes", ValueKind::on_off,
