@@ -267,12 +267,12 @@ bool PendingAnswers::is_borne_out(const PlaceMap& map, const Waiting& waiting) n
 /// What is told of a frame, before it is calibrated.
 double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcept {
   const double is_there = probability(waiting);
-  if (is_there <= most_in_doubt) return is_there;
   // Frames at the ends of a revisit lie on its trace together, or not: by their sum they are surer
   // than they should be.
   constexpr double surely_on = 0.9995;
   constexpr double hardly_sure = 0.7;
-  if (grows_ && waiting.on.still < surely_on) return hardly_sure;
+  if (grows_ && waiting.on.still < surely_on) return std::min(is_there, hardly_sure);
+  if (is_there <= most_in_doubt) return is_there;
   if (is_beside_a_jump(map, waiting)) return most_in_doubt;
   const double if_carried = waiting.right * waiting.carried.where(waiting.left);
   if (if_carried >= is_there || is_borne_out(map, waiting)) return is_there;
