@@ -33,11 +33,8 @@ class NaiveBelief {
     std::vector<std::size_t> way;  // rows that it came through, the newest last
   };
 
-  /// So that a good deal is known of rows before a doubt makes it start anew, and little then.
-  static double favoured(double doubt) { return doubt < 3.0 ? 6.0 : doubt < 4.0 ? -6.0 : 0.0; }
-
-  /// @param said added, with what `favoured` says, to the log-odds that are remembered
-  void observe(const SceneView& view, double said) {
+  /// @param remembered of the evidence: log-odds
+  void observe(const SceneView& view, const auto& remembered) {
     const auto share = [&](std::size_t frame, std::size_t row) {
       return view.map->rows().look_closely(view.queries->rows(), view.queries->row_of(frame),
                                            view.map->order().slot(row)) /
@@ -185,7 +182,7 @@ class NaiveBelief {
     judge(w, gains);
     if (rows_.empty()) return;
     // 6.4, `best`
-    const double here = log_odds(evidence) + said + favoured(evidence.doubt);
+    const double here = remembered(evidence);
     double& past = rows_.at(likeliest).past;
     if (!localises_ && evidence.doubt > 3.5) {
       for (auto& [row, at] : rows_) at.past = std::min(at.past, here);
@@ -293,9 +290,13 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
   for (const auto& descriptor : query) {
     const SceneView view = seen.take(descriptor);
     static_cast<void>(belief.observe(view, jumps));
-    // So that the best is now of one row, now of another.
-    const double said = static_cast<double>(view.newest * pattern % 13) - 6.0;
-    naive.observe(view, said);
+    // So that the best is now of one row, now of another, and a good deal is known of rows before
+    // a doubt makes it start anew, and little then.
+    const auto remembered = [&](const Evidence& evidence) {
+      const double favoured = evidence.doubt < 3.0 ? 6.0 : evidence.doubt < 4.0 ? -6.0 : 0.0;
+      return log_odds(evidence) + static_cast<double>(view.newest * pattern % 13) - 6.0 + favoured;
+    };
+    naive.observe(view, remembered);
     SCOPED_TRACE("frame " + std::to_string(view.newest));
     ASSERT_NEAR(belief.new_place(), naive.new_place, 1e-9);
     if (!belief.likeliest()) continue;
@@ -310,8 +311,7 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
     ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);
     ASSERT_NEAR(e.doubt, naive.evidence.doubt, 1e-6);
-    const double here = log_odds(e) + said + NaiveBelief::favoured(naive.evidence.doubt);
-    ASSERT_NEAR(belief.remember(here), naive.best, 1e-3);
+    ASSERT_NEAR(belief.remember(remembered(e)), naive.best, 1e-3);
   }
   EXPECT_GT(judged, query.size() / 2);
 }
