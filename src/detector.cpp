@@ -313,6 +313,7 @@ std::span<const Answer> Detector::finish() noexcept {
   report.answers = pending_.answers();
   if (!told_.empty() && end > 0) tell(report, pending_.answers());
   restart();
+  pending_.forget_jumps();
   return report.answers;
 }
 
@@ -333,8 +334,9 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   }
   if (config_.decision == Decision::probability) {
     if (readable) {
-      report.work.sketches += belief_.observe(
-          {&queries_, map_, &proposals_, newest, window_began_, rows}, pending_.jumps());
+      report.work.sketches +=
+          belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows},
+                          pending_.chance_of_return(newest));
     } else {
       belief_.pass(map_->order(), 1, 0);
     }
@@ -380,6 +382,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
     restart();
     return;
   }
+  pending_.forget_evidence();
   const std::uint64_t steps = told_.empty() ? frames : keyframes_.in(frames);
   keyframes_.skip(frames);
   steps_.skip(frames, steps);
@@ -390,7 +393,6 @@ void Detector::skip(std::uint64_t frames) noexcept {
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
   newest_was_seen_ = false;
-  pending_.nothing_is_judged();
   ranges_.skip(map_->order(), steps);
   proposals_.skip(map_->order(), steps);
   decision_.skip(steps);
@@ -407,7 +409,7 @@ void Detector::restart() noexcept {
   proposals_.restart();
   decision_.restart();
   belief_.restart();
-  pending_.nothing_is_judged();
+  pending_.forget_what_was_found();
   change_degree_ = {};
 }
 

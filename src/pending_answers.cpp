@@ -58,7 +58,7 @@ void PendingAnswers::accept_from(float least) noexcept {
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
-  nothing_is_judged();
+  forget_evidence();
   at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0,
                {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0.0,   0, {}};
   end_ = frame + 1;
@@ -70,9 +70,34 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
   std::ranges::copy(lines, lines_in(slot_of(frame)).begin());
 }
 
+void PendingAnswers::forget_what_was_found() noexcept {
+  evidence_.reset();
+  last_found_.reset();
+}
+
+/// 1 up to 100 frames after the newest frame that was found, 0 from 200 on, linear between: the
+/// robot may not be where the map is any more.
+double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
+  constexpr double soon = 100.0;
+  constexpr double late = 200.0;
+  if (!last_found_) return 0.0;
+  const auto since = static_cast<double>(frame - std::min(frame, *last_found_));
+  return std::clamp((late - since) / (late - soon), 0.0, 1.0);
+}
+
 /// That the robot was at the frame's row when it took it.
 double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * waiting.on.where(waiting.left);
+}
+
+/// How much more the log-odds of the newest frame's row have to be where it is another drive's, and
+/// the robot was not found lately: it may be where nobody has driven before, and much looks alike.
+double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
+  constexpr double more = 0.5;
+  const PlaceOrder& order = map.order();
+  const bool of_this_drive =
+      grows_ && at(newest).likeliest >= order.session(order.sessions() - 1).first;
+  return of_this_drive ? 0.0 : more * (1.0 - found_lately(newest));
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -87,7 +112,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   at(newest).novelty = trace.front().novelty;
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
-  const double right = trace_is_right(belief.remember(log_odds(*evidence_)));
+  const double best = belief.remember(log_odds(*evidence_));
+  const double right = trace_is_right(best - asked_of(map, newest));
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
     at(frame).left = true;
   }
@@ -215,8 +241,9 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, const Fram
     const bool late = frame < oldest || newest - steps.frame_of(frame) >= patience_;
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
     give(belief, map, steps, waiting);
-    const Answer& answer = answers_[given_ - 1];
-    if (grows_ || answer.gate != Gate::match) continue;
+    if (answers_[given_ - 1].gate != Gate::match) continue;
+    last_found_ = std::max(frame, last_found_.value_or(0));
+    if (grows_) continue;
     jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
   }
   // Frames from before a gap have all been answered now.
@@ -259,7 +286,7 @@ bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waitin
 /// along it better than elsewhere: much better, if the trace begins in that window.
 bool PendingAnswers::is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept {
   constexpr double much = 0.1;
-  if (waiting.lag <= 2 * after_centre_ || waiting.lines == 0) return false;
+  if (waiting.lag <= 2 * after_centre_) return false;
   const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : much;
   return margin(map, slot_of(waiting.frame), waiting.row) >= least;
 }
@@ -275,8 +302,8 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   if (is_there <= most_in_doubt) return is_there;
   if (is_beside_a_jump(map, waiting)) return most_in_doubt;
   const double if_carried = waiting.right * waiting.carried.where(waiting.left);
-  if (if_carried >= is_there || is_borne_out(map, waiting)) return is_there;
-  return std::max(most_in_doubt, if_carried);
+  if (if_carried < is_there && is_borne_out(map, waiting)) return is_there;
+  return std::clamp(if_carried, most_in_doubt, is_there);
 }
 
 void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,

@@ -112,10 +112,10 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
                                                double before, double usual, double least,
                                                double jumps, std::size_t asked) noexcept {
   constexpr double forgotten = 10.0;
-  constexpr double least_share = 1e-200;  // so that there is something to divide by
+  constexpr double tiny = 1e-200;  // so that there is something to divide by
   const Chances usual_chances =
       localises_ ? Chances{localising.begins, localising.ends + jumps} : closing_loops;
-  double fresh = std::max(1.0 - before, std::min(1.0, forgotten * jumps));
+  double fresh = std::max({1.0 - before, std::min(1.0, forgotten * jumps), tiny});
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
@@ -133,7 +133,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     const double gone_likelier = likelier_when_gone(usual, step.novelty);
     gone *= gone_likelier;
     if (const double sum = fresh + on + gone; is_far(sum)) {
-      fresh = std::max(fresh / sum, least_share);
+      fresh = std::max(fresh / sum, tiny);
       on /= sum;
       gone /= sum;
     }

@@ -33,7 +33,7 @@ struct Passing {
     pending.clear();
     const SceneView view = seen.take(descriptor);
     pending.add(view.newest, true);
-    static_cast<void>(belief.observe(view, pending.jumps()));
+    static_cast<void>(belief.observe(view, pending.chance_of_return(view.newest)));
     const std::size_t after = lines.window() - 1 - lines.centre();
     const auto centre = static_cast<std::size_t>(view.newest - after);
     if (view.newest >= lines.window() - 1 && centre < rows.size() && rows[centre]) {
@@ -159,6 +159,7 @@ TEST(PendingAnswers, AreSureAfterJumpsWhereTheirOwnWindowsAgree) {
   struct Sure {
     std::size_t first = 0;  // of the first ten frames of the last four pieces
     std::size_t later = 0;  // of the next twenty
+    std::size_t last = 0;   // of the last thirty
   };
   const auto sure = [&](double margin) {
     Sure count;
@@ -167,6 +168,7 @@ TEST(PendingAnswers, AreSureAfterJumpsWhereTheirOwnWindowsAgree) {
       if (frame < 4 * piece || answer.gate != Gate::match) continue;
       EXPECT_EQ(answer.match->place, *rows[frame]);
       count.first += static_cast<std::size_t>(frame % piece < 10);
+      count.last += static_cast<std::size_t>(frame % piece >= 30);
       count.later += static_cast<std::size_t>(frame % piece >= 10 && frame % piece < 30);
     }
     return count;
@@ -177,6 +179,9 @@ TEST(PendingAnswers, AreSureAfterJumpsWhereTheirOwnWindowsAgree) {
   // Otherwise it says less, but for those by which the trace has begun that is enough.
   EXPECT_LE(sure(0.09).first, 24U);
   EXPECT_EQ(sure(0.01).later, 80U);
+  EXPECT_LT(sure(-0.05).later, 80U) << "another place's line is better";
+  // A whole window has to go on along the trace.
+  EXPECT_EQ(sure(0.05).last, 103U);
 }
 
 /// Windows overlap, so that the first frames after a jump look as if they were on the trace before

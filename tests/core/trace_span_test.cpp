@@ -216,13 +216,16 @@ TEST(TraceSpan, NoTraceIsTooLong) {
     TraceSpan span(memory.arena, use, 1001);
     // Of the older half of the frames, and of the newer one.
     for (const auto& [older, newer] :
-         {std::pair{1.9, 1.9}, {-1.9, -1.9}, {0.0, 0.0}, {1.9, -1.9}, {-1.9, 1.9}}) {
-      SCOPED_TRACE(std::to_string(older) + ", " + std::to_string(newer));
+         {std::pair{1.9, 1.9}, {-1.9, -1.9}, {0.0, 0.0}, {1.9, -1.9}, {-1.9, 1.9}, {-6.5, -6.5}}) {
       std::vector<BeliefTraces::Step> trace(1001, {0, older - 0.05, 0.5, 0.5});
       for (std::size_t i = 0; i < 500; ++i) trace[i].gain = newer - 0.05;
-      for (const TraceSpan::On& on : span.find(trace, 0.0, 0.1, 0.3, 0.0, trace.size())) {
-        ASSERT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
-        ASSERT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+      for (const double before : {0.0, 0.5, 1.0}) {
+        SCOPED_TRACE(std::to_string(before) + ", " + std::to_string(older) + ", " +
+                     std::to_string(newer));
+        for (const TraceSpan::On& on : span.find(trace, before, 0.1, 0.3, 0.0, trace.size())) {
+          ASSERT_TRUE(on.still >= 0.0 && on.still <= 1.0) << on.still;
+          ASSERT_TRUE(on.left >= 0.0 && on.left <= 1.0) << on.left;
+        }
       }
     }
   }

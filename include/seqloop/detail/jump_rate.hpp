@@ -23,7 +23,7 @@ class JumpRate {
             std::uint64_t oldest) noexcept;
 
   /// The chance that the robot is carried away with a frame, 0 .. 0.5: 0 where it never was, else
-  /// eight times as often as it was seen to be. Windows overlap, so that frames on either side of a
+  /// 14 times as often as it was seen to be. Windows overlap, so that frames on either side of a
   /// jump say more for one trace than they know.
   [[nodiscard]] double chance() const noexcept;
 

@@ -48,7 +48,7 @@ class PendingAnswers {
   }
 
   /// The newest frame is not, or no longer, what was judged.
-  void nothing_is_judged() noexcept { evidence_.reset(); }
+  void forget_evidence() noexcept { evidence_.reset(); }
 
   /// Another frame waits. @param readable whether it could be read
   void add(std::uint64_t frame, bool readable) noexcept;
@@ -70,6 +70,18 @@ class PendingAnswers {
 
   /// The chance that the robot is carried away with a frame, beyond what is usual.
   [[nodiscard]] double jumps() const noexcept { return jump_rate_.chance(); }
+
+  /// How much of that says, at a frame, that it will be found on the map again: the less, the
+  /// longer it was not.
+  [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
+    return jumps() * found_lately(frame);
+  }
+
+  /// Frames are missing, nobody knows how many: nothing was found lately, or is judged.
+  void forget_what_was_found() noexcept;
+
+  /// What comes is another drive: the robot that was carried about in this one may not be in that.
+  void forget_jumps() noexcept { jump_rate_ = {}; }
 
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
@@ -135,6 +147,8 @@ class PendingAnswers {
   [[nodiscard]] std::span<FoundLine> lines_in(std::size_t slot) noexcept {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
+  [[nodiscard]] double asked_of(const PlaceMap& map, std::uint64_t newest) noexcept;
+  [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept;
@@ -172,6 +186,7 @@ class PendingAnswers {
   std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
   JumpRate jump_rate_;
+  std::optional<std::uint64_t> last_found_;  // frame of the newest answer that was accepted
   std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago
 };
 

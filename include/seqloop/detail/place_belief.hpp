@@ -43,8 +43,8 @@ class PlaceBelief {
   /// Allocates: from the arena only.
   PlaceBelief(Arena& arena, const MatcherConfig& config);
 
-  /// Takes the newest frame. @param jumps the chance that the robot was carried away with it,
-  /// beyond what is usual: `JumpRate::chance`
+  /// Takes the newest frame. @param jumps the chance that the robot was carried away with it and is
+  /// on the map again: `PendingAnswers::chance_of_return`
   /// @return pairs of sketches compared
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
   std::size_t observe(const SceneView& view, double jumps = 0.0) noexcept;
