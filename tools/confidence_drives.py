@@ -202,6 +202,18 @@ def street(seed: int, use: str, alone: int | None = None, metres: float = 1.0):
     return make
 
 
+def elsewhere(seed: int, other: int, pieces: int = 0):
+    """A street in another season, in the map of another street, on whose own street the robot has
+    been carried about before: so many pieces of 40 frames, which are not asked for."""
+    def make(maker: Maker):
+        (known, same), _ = maker.street("localise", 600, other, 1.0)
+        (_, foreign), _ = maker.street("localise", 600, seed, 1.0)
+        begins = np.random.default_rng(5).integers(0, len(same) - 40, pieces)
+        rows = np.vstack([*(same[at:at + 40] for at in begins), foreign])
+        return rows, known, {40 * pieces + i: [] for i in range(len(foreign))}
+    return make
+
+
 def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
     """@param teleports_by so many times as many teleports"""
     (day, night), (summer, winter) = GARDENS, NORDLAND
@@ -235,9 +247,12 @@ def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
                for seed in seeds[:4] for metres in (0.5, 0.25)]
     drives += [Drive(f"new-{source.split('/')[-1]}", nothing_twice(source), (10, 2), (source,))
                for source in (*GARDENS, *NORDLAND)]
-    for seed in seeds:
+    for seed, other in zip(seeds, seeds[1:] + seeds[:1]):
         drives += [Drive(f"street-{seed}", street(seed, "localise"), (10, 3)),
                    Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3), seed=seed),
                    Drive(f"street-{seed}-new-summer", street(seed, "localise", 0), (10, 3)),
                    Drive(f"street-{seed}-new-winter", street(seed, "localise", 1), (10, 3))]
+        if other != seed:
+            drives += [Drive(f"elsewhere-{seed}-in-{other}", elsewhere(seed, other), (10, 3)),
+                       Drive(f"carried-off-{other}-to-{seed}", elsewhere(seed, other, 16), (10, 3))]
     return drives
