@@ -242,7 +242,7 @@ void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, const Fram
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
     give(belief, map, steps, waiting);
     if (answers_[given_ - 1].gate != Gate::match) continue;
-    last_found_ = std::max(frame, last_found_.value_or(0));
+    if (frame >= oldest) last_found_ = std::max(frame, last_found_.value_or(0));
     if (grows_) continue;
     jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
   }
