@@ -28,7 +28,7 @@ Capacity capacity_of(const PlaceMap& map) { return {map.capacity(), map.descript
 /// The rows of the map that are of the running drive.
 CandidateRun running(const MatcherConfig& config, const PlaceOrder& order) {
   if (config.use == Use::localise) return {order.size(), order.size()};
-  return order.session(order.sessions() - 1);
+  return order.newest_session();
 }
 
 /// Query descriptors that must be kept: the window's, and what the change degree of its centre

@@ -71,7 +71,7 @@ void PendingAnswers::found(std::uint64_t frame, std::span<const FoundLine> lines
 }
 
 void PendingAnswers::forget_what_was_found() noexcept {
-  evidence_.reset();
+  forget_evidence();
   last_found_.reset();
 }
 
@@ -81,7 +81,7 @@ double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
   constexpr double soon = 100.0;
   constexpr double late = 200.0;
   if (!last_found_) return 0.0;
-  const auto since = static_cast<double>(frame - std::min(frame, *last_found_));
+  const auto since = static_cast<double>(frame - *last_found_);
   return std::clamp((late - since) / (late - soon), 0.0, 1.0);
 }
 
@@ -94,9 +94,7 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
 /// the robot was not found lately: it may be where nobody has driven before, and much looks alike.
 double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
   constexpr double more = 0.5;
-  const PlaceOrder& order = map.order();
-  const bool of_this_drive =
-      grows_ && at(newest).likeliest >= order.session(order.sessions() - 1).first;
+  const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
   return of_this_drive ? 0.0 : more * (1.0 - found_lately(newest));
 }
 

@@ -134,7 +134,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
 /// believed.
 bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
   const PlaceOrder& order = view.map->order();
-  return localises_ || order.session(order.sessions() - 1).first >= SceneGauge::least_rows;
+  return localises_ || order.newest_session().first >= SceneGauge::least_rows;
 }
 
 /// Has the processor fetch what weighing the rows found will read and their finding has not.
@@ -150,7 +150,7 @@ void PlaceBelief::prefetch(const SceneView& view) noexcept {
 /// another pace than that drive did.
 bool PlaceBelief::goes_at_its_pace(const PlaceOrder& order, std::size_t row,
                                    double jumps) const noexcept {
-  return jumps <= jumps_often && (localises_ || row < order.session(order.sessions() - 1).first);
+  return jumps <= jumps_often && (localises_ || row < order.newest_session().first);
 }
 
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.

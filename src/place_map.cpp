@@ -76,7 +76,7 @@ bool PlaceMap::fits(std::span<const float> descriptor) const noexcept {
 }
 
 bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
-  const CandidateRun newest = order_.session(order_.sessions() - 1);
+  const CandidateRun newest = order_.newest_session();
   if (standardised_.empty() || newest.first != newest.last || !fits(descriptor)) return false;
   if (!std::exchange(learning_, true)) statistics_.forget();
   statistics_.observe(descriptor);
@@ -85,7 +85,7 @@ bool PlaceMap::learn(std::span<const float> descriptor) noexcept {
 
 bool PlaceMap::add(std::span<const float> descriptor) noexcept {
   if (size() == capacity() || !fits(descriptor)) return false;
-  const std::size_t first = order_.session(order_.sessions() - 1).first;
+  const std::size_t first = order_.newest_session().first;
   std::uint64_t frame = first == size() ? 0 : order_.frame(size() - 1) + 1;
   if (!standardised_.empty()) {
     if (first == size()) {

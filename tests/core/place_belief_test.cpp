@@ -287,9 +287,13 @@ TEST(PlaceBelief, MoreIsAskedWhereTheRobotWasNotFoundLately) {
     return steps;
   };
   const std::size_t soon = answered_after(80);
+  const std::size_t later = answered_after(140);
   const std::size_t late = answered_after(200);
-  std::printf("found again after %zu and %zu frames of ten drives\n", soon, late);
+  std::printf("found again after %zu, %zu and %zu frames of ten drives\n", soon, later, late);
+  EXPECT_GT(later, soon + 20);
+  EXPECT_GT(late, later + 20);
   EXPECT_GT(late, soon + 60);
+  EXPECT_LT(late, soon + 150);
 }
 
 TEST(PlaceBelief, ACoveredLensSaysNothing) {

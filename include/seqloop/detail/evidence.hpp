@@ -15,7 +15,7 @@ struct Evidence {
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
-  double jumps = 0.0;     ///< how often it was carried about on this map until lately, 0 .. .5
+  double jumps = 0.0;     ///< the chance of a jump, if it was found on this map lately, 0 .. .5
   bool earlier_drives = false;  ///< whether the map has 20 or more places of earlier drives
 };
 

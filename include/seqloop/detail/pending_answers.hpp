@@ -71,8 +71,8 @@ class PendingAnswers {
   /// The chance that the robot is carried away with a frame, beyond what is usual.
   [[nodiscard]] double jumps() const noexcept { return jump_rate_.chance(); }
 
-  /// How much of that says, at a frame, that it will be found on the map again: the less, the
-  /// longer it was not.
+  /// How much of the chance of a jump says that the robot will be found on the map again: the less,
+  /// the longer it was not. @param frame the newest, or a later one
   [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
     return jumps() * found_lately(frame);
   }

@@ -64,6 +64,9 @@ class PlaceOrder {
     return {begins_[session].row, session + 1 < sessions_ ? begins_[session + 1].row : size_};
   }
 
+  /// The rows of the session that was begun last.
+  [[nodiscard]] CandidateRun newest_session() const noexcept { return session(sessions_ - 1); }
+
   /// The session that a row is of; the newest for one beyond the last. Work: log sessions.
   [[nodiscard]] std::size_t session_of(std::size_t row) const noexcept {
     return sessions_ == 1 ? 0 : last_begun(row, &Begin::row);
