@@ -362,6 +362,7 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
     std::array<FoundLine, PendingAnswers::lines_kept> lines;
     const std::size_t count = lowest_lines(search_, map_->order(), budget_.runs(), *best, lines);
     pending_.found(*report.frame, std::span(lines).first(count));
+    expect_next(*best, rows, newest);
   }
 
   // Update: what the next frame starts from.
@@ -547,20 +548,32 @@ bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcep
   return ranges_.full_search();
 }
 
+/// The row at the newest frame of the window's best line.
+std::size_t Detector::ahead_of(const BestRow& best) const noexcept {
+  return best.row + static_cast<std::size_t>(trajectories_.offsets(search_.line(best.row)).back());
+}
+
+/// Where the best line leads, the robot may be with the next frame: if it was found lately, for in
+/// a map of somewhere else there is always a best line, too.
+void Detector::expect_next(const BestRow& best, std::size_t rows, std::uint64_t newest) noexcept {
+  const std::size_t next = ahead_of(best) + 1;
+  const bool goes_on = next < rows && map_->order().apart(best.row, next) == next - best.row;
+  if (!goes_on || pending_.found_lately(newest) <= 0.0) return;
+  belief_.expect(next, best.uniqueness);
+}
+
 /// Names the gate, and the line behind the best row.
 void Detector::decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept {
   if (!best) {
     report.gate = Gate::no_candidate;
     return;
   }
-  const std::size_t line = search_.line(best->row);
-  const auto ahead = static_cast<std::size_t>(trajectories_.offsets(line).back());
   const auto number = [&](std::size_t row) { return map_->order().number(row); };
   report.match = Match{number(best->row),
                        static_cast<float>(best->score),
                        static_cast<float>(best->uniqueness),
-                       trajectories_.velocity(line),
-                       number(best->row + ahead),
+                       trajectories_.velocity(search_.line(best->row)),
+                       number(ahead_of(*best)),
                        best->runner_up ? std::optional(number(*best->runner_up)) : std::nullopt};
   const bool unique = report.match->uniqueness <= config_.max_uniqueness;
   report.gate = unique ? Gate::match : Gate::not_unique;

@@ -75,8 +75,7 @@ void PendingAnswers::forget_what_was_found() noexcept {
   last_found_.reset();
 }
 
-/// 1 up to 100 frames after the newest frame that was found, 0 from 200 on, linear between: the
-/// robot may not be where the map is any more.
+/// Linear between: the robot may not be where the map is any more.
 double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
   constexpr double soon = 100.0;
   constexpr double late = 200.0;

@@ -22,6 +22,12 @@ constexpr double small_map = 200.0;
 // just left it; so is one that is carried from place to place.
 constexpr double coming_at_first = 0.1;
 
+// How unique a window's best line has to be, and the part of what comes onto the map that then
+// comes where the line leads: a place that no single frame shows well is born with too little
+// otherwise.
+constexpr double stands_out = 0.97;
+constexpr double where_it_leads = 0.25;
+
 // How much the best wrong sums vary at least. A drive through new places has wrong rows in store
 // that do better than those it has met.
 constexpr double least_variance = 1.25;
@@ -36,8 +42,8 @@ constexpr double jumps_often = 0.01;
 
 constexpr double decay = 0.95;
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
-constexpr std::size_t born_most = 16;
-constexpr std::size_t old_most = PlaceBelief::most - born_most;
+constexpr std::size_t found_most = 15;
+constexpr std::size_t old_most = PlaceBelief::most - found_most - 1;  // one comes by the line
 
 /// The n-th highest value, and how many are higher. Unlike `std::nth_element` it asks of no value
 /// where to go on: processors guess such answers wrong.
@@ -114,7 +120,9 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const double comes = std::max(rarely, std::min(coming_at_first, jumps)) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
   const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
-  const double each = born / static_cast<double>(view.seen->scanned().bits.size());
+  const std::optional<std::size_t> led_to = std::exchange(expected_, std::nullopt);
+  const double by_line = led_to && *led_to < view.rows ? where_it_leads * born : 0.0;
+  const double each = (born - by_line) / static_cast<double>(view.seen->scanned().bits.size());
   // In a drive's own map what is believed less than a row that is found anew will be found again.
   move(view.map->order(), *scene, jumps, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
@@ -124,6 +132,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   ended_.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;
   give_birth(view, each);
+  if (by_line > 0.0) bear(*led_to, by_line);
   hand_over(*view.map);
   weigh(view, *scene);
   judge(view, *scene, jumps, earlier_drives);
@@ -223,18 +232,24 @@ void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
   // The rows beyond those that may be searched are gone.
   while (moved_count_ > 0 && moved_[moved_count_ - 1].row >= view.rows) --moved_count_;
   if (mass <= 0.0) return;
-  for (const CandidateProposals::Alike& found : view.seen->found()) {
-    const auto known = moved_.first(moved_count_);
-    const auto place = std::ranges::lower_bound(known, found.row, {}, &Moved::row);
-    if (place != known.end() && place->row == found.row) {
-      place->share = place->mass / (place->mass + mass);
-      place->mass += mass;
-      continue;
-    }
-    std::move_backward(place, known.end(), known.end() + 1);
-    *place = {found.row, mass, 1.0, BeliefTraces::none};
-    ++moved_count_;
+  const auto found = view.seen->found();
+  for (const CandidateProposals::Alike& at : found.first(std::min(found.size(), found_most))) {
+    bear(at.row, mass);
   }
+}
+
+/// Gives belief that has come onto the map to a row.
+void PlaceBelief::bear(std::size_t row, double mass) noexcept {
+  const auto known = moved_.first(moved_count_);
+  const auto place = std::ranges::lower_bound(known, row, {}, &Moved::row);
+  if (place != known.end() && place->row == row) {
+    place->share = place->mass / (place->mass + mass);
+    place->mass += mass;
+    return;
+  }
+  std::move_backward(place, known.end(), known.end() + 1);
+  *place = {row, mass, 1.0, BeliefTraces::none};
+  ++moved_count_;
 }
 
 /// Where the rows of a session end, belief goes on with other visits of the place, and with it how
@@ -451,7 +466,12 @@ double PlaceBelief::remember(double odds) noexcept {
   return past;
 }
 
+void PlaceBelief::expect(std::size_t row, double uniqueness) noexcept {
+  if (uniqueness <= stands_out) expected_ = row;
+}
+
 void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept {
+  expected_.reset();
   first_frames_.repeat(frames);
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     traces_.next(0.0, 0.0);
@@ -471,6 +491,7 @@ void PlaceBelief::removed(std::size_t row) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
     if (at.row > row) --at.row;
   }
+  if (expected_ && *expected_ > row) --*expected_;
   traces_.removed(row);
   wrong_.removed(row);
 }
@@ -479,6 +500,7 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
     if (at.row >= row) ++at.row;
   }
+  if (expected_ && *expected_ >= row) ++*expected_;
   traces_.inserted(row);
   wrong_.inserted(row);
 }
@@ -488,6 +510,7 @@ void PlaceBelief::restart() noexcept {
   weighed_ = 0;
   new_place_ = 1.0;
   likeliest_.reset();
+  expected_.reset();
   traces_.restart();
   first_frames_.restart();
   wrong_.settle();

@@ -296,6 +296,38 @@ TEST(PlaceBelief, MoreIsAskedWhereTheRobotWasNotFoundLately) {
   EXPECT_LT(late, soon + 150);
 }
 
+/// A row that no single frame shows well is found sooner where the window's best line leads: by a
+/// robot that was found lately, for any map has a best line.
+TEST(PlaceBelief, IsBornWhereTheBestLineLeadsIfItWasFoundLately) {
+  const auto found_after = [](std::size_t away) {
+    std::size_t steps = 0;
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+      constexpr float noise = 5.0F;
+      const MatcherConfig config = settings(Use::localise);
+      PlaceMap map = map_of(way(seed, 1500, noise, 1), config);
+      Detector detector(config, map);
+      const oracle::Vectors same = way(seed, 1500, noise, 2);
+      for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
+      for (const auto& descriptor : way(seed + 100, away, 0.5F, 1)) {
+        static_cast<void>(detector.step(descriptor));
+      }
+      bool found = false;
+      for (std::size_t i = 800; i < 1000 && !found; ++i) {
+        ++steps;
+        const auto now = detector.step(same[i]).now;
+        found = now && now->new_place < 0.5F &&
+                std::abs(static_cast<double>(now->place) - static_cast<double>(i)) < 5.0;
+      }
+    }
+    return steps;
+  };
+  const std::size_t lately = found_after(20);
+  const std::size_t long_ago = found_after(250);
+  std::printf("found again after %zu and %zu frames of twenty drives\n", lately, long_ago);
+  EXPECT_LT(lately, 1200U);
+  EXPECT_GT(long_ago, lately + 400);
+}
+
 TEST(PlaceBelief, ACoveredLensSaysNothing) {
   const oracle::Vectors reference = way(9, 300, 0.5F, 1);
   oracle::Vectors query = way(9, 300, 0.5F, 2);

@@ -71,6 +71,11 @@ class PendingAnswers {
   /// The chance that the robot is carried away with a frame, beyond what is usual.
   [[nodiscard]] double jumps() const noexcept { return jump_rate_.chance(); }
 
+  /// How lately the robot was found: 1 up to 100 frames after the newest frame whose answer was
+  /// accepted, 0 from 200 on, and where there is none since a gap or in this drive. @param frame as
+  /// below
+  [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
+
   /// How much of the chance of a jump says that the robot will be found on the map again: the less,
   /// the longer it was not. @param frame the newest, or a later one
   [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
@@ -148,7 +153,6 @@ class PendingAnswers {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
   [[nodiscard]] double asked_of(const PlaceMap& map, std::uint64_t newest) noexcept;
-  [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept;

@@ -49,6 +49,10 @@ class PlaceBelief {
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
   std::size_t observe(const SceneView& view, double jumps = 0.0) noexcept;
 
+  /// Takes in where the newest window's best line leads: it is born there with the next frame, if
+  /// the line stands out. @param uniqueness as `Match` has it; NaN: nothing is known of it
+  void expect(std::size_t row, double uniqueness) noexcept;
+
   /// Frames went by unseen, and the robot moved on by this many rows in each.
   void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
 
@@ -134,6 +138,7 @@ class PlaceBelief {
   void move(const PlaceOrder& order, const Scene& scene, double jumps, double least) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
+  void bear(std::size_t row, double mass) noexcept;
   void hand_over(const PlaceMap& map) noexcept;
   void take_on(const PlaceOrder& order, Hypothesis& at, const Moved& moved,
                bool drives) const noexcept;
@@ -153,9 +158,10 @@ class PlaceBelief {
   std::size_t moved_count_ = 0;
   Ended ended_;
   std::optional<Likeliest> likeliest_;
-  std::span<Hypothesis> rows_;  // [most] in order of row
-  std::span<Hypothesis> next_;  // [most] of the frame that is being weighed
-  std::span<Moved> moved_;      // [3 most]
+  std::optional<std::size_t> expected_;  // row of the next frame, by the best line before it
+  std::span<Hypothesis> rows_;           // [most] in order of row
+  std::span<Hypothesis> next_;           // [most] of the frame that is being weighed
+  std::span<Moved> moved_;               // [3 most]
   SceneGauge gauge_;
   FirstFrames first_frames_;
   BeliefTraces traces_;
