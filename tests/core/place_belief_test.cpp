@@ -263,37 +263,72 @@ TEST(PlaceBelief, JumpsSpeakForTheMapUntilTheRobotHasLeftIt) {
   EXPECT_EQ(speaks_after(way(9, 300, 0.5F, 1)), 0.0) << "elsewhere";
 }
 
-/// Much looks alike: a robot that was not found lately has to be seen better before it is.
-TEST(PlaceBelief, MoreIsAskedWhereTheRobotWasNotFoundLately) {
-  const auto answered_after = [](std::size_t away) {
-    std::size_t steps = 0;
-    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-      const MatcherConfig config = settings(Use::localise);
-      PlaceMap map = map_of(way(seed, 400, 4.0F, 1), config);
-      Detector detector(config, map);
-      const oracle::Vectors same = way(seed, 400, 4.0F, 2);
-      const oracle::Vectors other = way(seed + 100, away, 4.0F, 1);
-      for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
-      for (const auto& descriptor : other) static_cast<void>(detector.step(descriptor));
-      const std::uint64_t back = 100 + away;
-      bool found = false;
-      for (std::size_t i = 200; i < 400 && !found; ++i) {
-        ++steps;
-        for (const Answer& answer : detector.step(same[i]).answers) {
-          found |= answer.gate == Gate::match && answer.frame >= back;
-        }
+/// Steps that ten robots take until they are found again in an earlier drive, after so many frames
+/// elsewhere.
+std::size_t found_again_after(std::size_t away, Use use) {
+  std::size_t steps = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const MatcherConfig config = settings(use);
+    PlaceMap map(config, {1200, size, 2});
+    EXPECT_TRUE(map.begin_session());
+    fill(map, way(seed, 400, 4.0F, 1));
+    Detector detector(config, map);
+    const oracle::Vectors same = way(seed, 400, 4.0F, 2);
+    const oracle::Vectors other = way(seed + 100, away, 4.0F, 1);
+    for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
+    for (const auto& descriptor : other) static_cast<void>(detector.step(descriptor));
+    const std::uint64_t back = 100 + away;
+    bool found = false;
+    for (std::size_t i = 200; i < 400 && !found; ++i) {
+      ++steps;
+      for (const Answer& answer : detector.step(same[i]).answers) {
+        found |= answer.gate == Gate::match && answer.frame >= back;
       }
     }
-    return steps;
-  };
-  const std::size_t soon = answered_after(80);
-  const std::size_t later = answered_after(140);
-  const std::size_t late = answered_after(200);
+  }
+  return steps;
+}
+
+/// Much looks alike: a robot that was not found lately has to be seen better before it is.
+TEST(PlaceBelief, MoreIsAskedWhereTheRobotWasNotFoundLately) {
+  const std::size_t soon = found_again_after(80, Use::localise);
+  const std::size_t later = found_again_after(140, Use::localise);
+  const std::size_t late = found_again_after(200, Use::localise);
   std::printf("found again after %zu, %zu and %zu frames of ten drives\n", soon, later, late);
   EXPECT_GT(later, soon + 20);
   EXPECT_GT(late, later + 20);
   EXPECT_GT(late, soon + 60);
   EXPECT_LT(late, soon + 150);
+}
+
+TEST(PlaceBelief, MoreIsAskedOfADriveThatIsAddedToo) {
+  const std::size_t soon = found_again_after(80, Use::close_loops);
+  const std::size_t late = found_again_after(200, Use::close_loops);
+  std::printf("found again after %zu and %zu frames of ten drives\n", soon, late);
+  EXPECT_GT(late, soon + 20);
+}
+
+/// A drive knows its own places: there no more is asked of it.
+TEST(PlaceBelief, NoMoreIsAskedForTheDrivesOwnPlaces) {
+  std::size_t steps = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const MatcherConfig config = settings(Use::close_loops);
+    PlaceMap map(config, {700, size});
+    Detector detector(config, map);
+    for (const auto& descriptor : way(seed, 400, 4.0F, 1)) {
+      static_cast<void>(detector.step(descriptor));
+    }
+    const oracle::Vectors same = way(seed, 400, 4.0F, 2);
+    bool found = false;
+    for (std::size_t i = 100; i < 400 && !found; ++i) {
+      ++steps;
+      for (const Answer& answer : detector.step(same[i]).answers) {
+        found |= answer.gate == Gate::match && answer.frame >= 400;
+      }
+    }
+  }
+  std::printf("found after %zu frames of ten drives\n", steps);
+  EXPECT_LT(steps, 420U);
 }
 
 /// A row that no single frame shows well is found sooner where the window's best line leads: by a
