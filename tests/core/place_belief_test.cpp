@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "core/matcher.hpp"
@@ -263,6 +264,19 @@ TEST(PlaceBelief, JumpsSpeakForTheMapUntilTheRobotHasLeftIt) {
   EXPECT_EQ(speaks_after(way(9, 300, 0.5F, 1)), 0.0) << "elsewhere";
 }
 
+/// Steps until the answer of a frame is accepted that is not before this one; all, if none is.
+std::size_t steps_until_found(Detector& detector, std::span<const std::vector<float>> frames,
+                              std::uint64_t from) {
+  std::size_t steps = 0;
+  for (const auto& descriptor : frames) {
+    ++steps;
+    for (const Answer& answer : detector.step(descriptor).answers) {
+      if (answer.gate == Gate::match && answer.frame >= from) return steps;
+    }
+  }
+  return steps;
+}
+
 /// Steps that ten robots take until they are found again in an earlier drive, after so many frames
 /// elsewhere.
 std::size_t found_again_after(std::size_t away, Use use) {
@@ -277,14 +291,7 @@ std::size_t found_again_after(std::size_t away, Use use) {
     const oracle::Vectors other = way(seed + 100, away, 4.0F, 1);
     for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
     for (const auto& descriptor : other) static_cast<void>(detector.step(descriptor));
-    const std::uint64_t back = 100 + away;
-    bool found = false;
-    for (std::size_t i = 200; i < 400 && !found; ++i) {
-      ++steps;
-      for (const Answer& answer : detector.step(same[i]).answers) {
-        found |= answer.gate == Gate::match && answer.frame >= back;
-      }
-    }
+    steps += steps_until_found(detector, std::span(same).subspan(200), 100 + away);
   }
   return steps;
 }
@@ -319,13 +326,7 @@ TEST(PlaceBelief, NoMoreIsAskedForTheDrivesOwnPlaces) {
       static_cast<void>(detector.step(descriptor));
     }
     const oracle::Vectors same = way(seed, 400, 4.0F, 2);
-    bool found = false;
-    for (std::size_t i = 100; i < 400 && !found; ++i) {
-      ++steps;
-      for (const Answer& answer : detector.step(same[i]).answers) {
-        found |= answer.gate == Gate::match && answer.frame >= 400;
-      }
-    }
+    steps += steps_until_found(detector, std::span(same).subspan(100), 400);
   }
   std::printf("found after %zu frames of ten drives\n", steps);
   EXPECT_LT(steps, 420U);

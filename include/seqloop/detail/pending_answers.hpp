@@ -72,12 +72,12 @@ class PendingAnswers {
   [[nodiscard]] double jumps() const noexcept { return jump_rate_.chance(); }
 
   /// How lately the robot was found: 1 up to 100 frames after the newest frame whose answer was
-  /// accepted, 0 from 200 on, and where there is none since a gap or in this drive. @param frame as
-  /// below
+  /// accepted, 0 from 200 on, and where there is none since a gap or in this drive.
+  /// @param frame the newest, or a later one
   [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
 
   /// How much of the chance of a jump says that the robot will be found on the map again: the less,
-  /// the longer it was not. @param frame the newest, or a later one
+  /// the longer it was not. @param frame as above
   [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
     return jumps() * found_lately(frame);
   }
