@@ -49,7 +49,8 @@ def attacks() -> list[bytes]:
     whole = place(1006, 0, 0, about("cut"))
     said += [whole[:end] for end in (12, 20, 28, 33, 60, len(whole) - 4)]
     said += [whole[:28] + struct.pack("<I", 2**32 - 1) + whole[32:], whole[:28] + struct.pack("<I", 2) + whole[32:]]
-    said += [place(1001, frame, 10 * SECOND) for frame in range(1, 2100)]
+    # Twice as many as it takes to be called a flood: a busy machine loses some.
+    said += [place(1001, frame, 10 * SECOND) for frame in range(1, 4100)]
     return said
 
 
