@@ -12,10 +12,12 @@
 #include <unistd.h>
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "options.hpp"
 #include "renderer.hpp"
+#include "shade.hpp"
 #include "speed.hpp"
 
 namespace seqloop::street {
@@ -126,6 +128,56 @@ TEST(StreetFrames, AnySizeAndPicturesWithContent) {
     EXPECT_GT(mean[1], 30.0);
     EXPECT_LT(mean[1], 225.0);
   }
+}
+
+double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  cv::Mat found;
+  cv::matchTemplate(a, b, found, cv::TM_CCOEFF_NORMED);
+  return static_cast<double>(found.at<float>(0));
+}
+
+TEST(StreetFrames, TheSameMetreOfAnotherStreetHasAnotherRoad) {
+  const auto road = [](std::uint64_t seed) {
+    const Job job = small_job(20, seed);
+    Scene scene;
+    build_scene(World(seed), reference_of(job).path(), reference_of(job).shot(0), 64, 32, scene);
+    Strip strip = scene.strips.front();
+    strip.crossing = false;
+    std::vector<float> tones;
+    for (strip.cell = 0; strip.cell < 40; ++strip.cell) {
+      for (float d = 0.5F; d < 3.0F; d += 0.5F)  // between its markings
+        tones.push_back(paint_ground(strip, {0.0F, d, 0.01F, 0.01F}, Light{}).albedo.r);
+    }
+    return tones;
+  };
+  EXPECT_GT(correlation(road(1), road(1)), 0.999);
+  EXPECT_LT(correlation(road(1), road(2)), 0.2);
+}
+
+TEST(StreetFrames, HillsAreTheStreetsAndCloudsAreTheDrives) {
+  const Job job = small_job(20);
+  constexpr int width = 64;
+  constexpr int height = 32;
+  GBuffer nothing(width, height);
+  nothing.clear();
+  const Camera camera = make_camera({0.0, 0.0, 1.6}, 0.0, 0.0, 0.0, width, height);
+  const auto sky = [&](const Drive& drive, std::uint64_t street) {
+    Shot shot = drive.shot(0);
+    shot.light = Light{};
+    std::vector<Color> picture(static_cast<std::size_t>(width) * height);
+    shade_sky(camera, shot, 0.0, street, nothing, picture);
+    std::vector<float> above;
+    std::vector<float> hills;
+    for (std::size_t i = 0; i < picture.size() / 2; ++i)
+      (i < picture.size() / 4 ? above : hills).push_back(picture[i].r);
+    return std::pair(above, hills);
+  };
+  const auto summer = sky(reference_of(job), 1);
+  const auto elsewhere = sky(reference_of(job), 2);
+  const auto winter = sky(query_of(job), 1);
+  EXPECT_EQ(summer.first, elsewhere.first);
+  EXPECT_NE(summer.second, elsewhere.second);
+  EXPECT_LT(correlation(summer.first, winter.first), 0.5);
 }
 
 TEST(StreetSpeed, ExactLengthAndNeverBackwards) {

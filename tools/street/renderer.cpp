@@ -22,7 +22,7 @@ void Renderer::render(const Shot& shot, cv::Mat& image) {
   }
   draw_shadows();
   shade();
-  shade_sky(scene_.camera, shot.light, path_.heading(shot.leg, shot.position), shot.time, g_,
+  shade_sky(scene_.camera, shot, path_.heading(shot.leg, shot.position), world_.seed(), g_,
             picture_);
   std::sort(scene_.sprites.begin(), scene_.sprites.end(),
             [](const Sprite& a, const Sprite& b) { return a.foot.z > b.foot.z; });

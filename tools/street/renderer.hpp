@@ -35,8 +35,9 @@ class Renderer {
 };
 
 /// Fills those pixels that show nothing else with sky, clouds and hills.
-/// @param heading absolute heading of the layout frame, rad.
-void shade_sky(const Camera& camera, const Light& light, double heading, double time,
+/// @param heading absolute heading of the layout frame, rad. @param street seed of its hills; the
+/// clouds are the shot's.
+void shade_sky(const Camera& camera, const Shot& shot, double heading, std::uint64_t street,
                const GBuffer& g, std::vector<Color>& picture);
 
 /// Lens and sensor: vignette, white balance, exposure, tone curve, noise.

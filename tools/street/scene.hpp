@@ -20,17 +20,18 @@ struct Shot {
   double height = 1.6;                        ///< metres above the road
   double yaw = 0.0, pitch = 0.0, roll = 0.0;  ///< rad: left, up, clockwise
   double time = 0.0;                          ///< frames since the start; moves cars and clouds
-  std::uint64_t traffic = 0;  ///< seed of what does not stay: cars, people, lit windows
+  std::uint64_t traffic = 0;  ///< seed of what does not stay: cars, people, lit windows, clouds
   std::uint64_t noise = 0;    ///< seed of this frame's sensor noise
   Light light;
 };
 
 /// A stretch of ground between two cross-sections of the road.
 struct Strip {
-  float street{};       ///< metres from its cell's begin to its first cross-section
-  float length{};       ///< metres on the centre line
-  float bend{};         ///< tangent of half its turn to the left
-  std::int32_t cell{};  ///< the cell that holds it
+  float street{};        ///< metres from its cell's begin to its first cross-section
+  float length{};        ///< metres on the centre line
+  float bend{};          ///< tangent of half its turn to the left
+  std::int32_t cell{};   ///< the cell that holds it
+  std::uint32_t seed{};  ///< of what is worn and patched, the street's
   bool crossing{};
   Color paving, verge;
 };

@@ -13,6 +13,7 @@ constexpr double kLap = 0.05;   // metres by which strips overlap, so that no pi
 }  // namespace
 
 void add_ground(const World& world, const Layout& layout, Scene& scene) {
+  const auto seed = static_cast<std::uint32_t>(hash_of(world.seed(), 0x67726f75));
   for (const Piece& piece : layout.pieces()) {
     // Strips begin at round street metres, so that they do not crawl along with the camera.
     const double from = std::floor((piece.begin + piece.offset) / 3.0) * 3.0;
@@ -41,6 +42,7 @@ void add_ground(const World& world, const Layout& layout, Scene& scene) {
       strip.bend = static_cast<float>(half_turn);
       strip.crossing = cell.crossing;
       strip.cell = static_cast<std::int32_t>(k);
+      strip.seed = seed;
       strip.paving = cell.paving;
       strip.verge = cell.verge;
       scene.strips.push_back(strip);

@@ -16,8 +16,11 @@ float hill(float azimuth, float scale, std::uint32_t seed) {
 
 }  // namespace
 
-void shade_sky(const Camera& camera, const Light& light, double heading, double time,
+void shade_sky(const Camera& camera, const Shot& shot, double heading, std::uint64_t street,
                const GBuffer& g, std::vector<Color>& picture) {
+  const Light& light = shot.light;
+  const auto land = static_cast<std::uint32_t>(hash_of(street, 0x68696c6c));
+  const auto air = static_cast<std::uint32_t>(hash_of(shot.traffic, 0x636c6f75));
   std::vector<float> far_hills(static_cast<std::size_t>(g.width));
   std::vector<float> near_hills(far_hills.size());
   const auto k = static_cast<float>(1.0 / camera.focal);
@@ -30,10 +33,10 @@ void shade_sky(const Camera& camera, const Light& light, double heading, double 
     const Vec3 ray = camera.forward + camera.right * c;
     const auto azimuth = static_cast<float>(wrap_angle(std::atan2(ray.y, ray.x) + heading)) + 4.0F;
     const auto column = static_cast<std::size_t>(x);
-    far_hills[column] = 0.02F + 0.13F * hill(azimuth, 3.1F, 91U);
-    near_hills[column] = 0.05F * hill(azimuth, 9.7F, 92U) - 0.004F;
+    far_hills[column] = 0.02F + 0.13F * hill(azimuth, 3.1F, land);
+    near_hills[column] = 0.05F * hill(azimuth, 9.7F, land + 1U) - 0.004F;
   }
-  const auto drift = static_cast<float>(time * 0.012);
+  const auto drift = static_cast<float>(shot.time * 0.012);
   const Color haze = mix(light.sky_low, light.fog, 0.5F);
   const Color hill_light = light.ambient + light.sun * 0.35F;
   const Color wood = mix(light.leaf, Color{0.8F, 0.82F, 0.86F}, 0.6F * light.snow) * hill_light;
@@ -67,9 +70,9 @@ void shade_sky(const Camera& camera, const Light& light, double heading, double 
       const auto sh = static_cast<float>(std::sin(heading));
       const float wx = (dx * ch - dy * sh) * reach + drift;
       const float wy = (dx * sh + dy * ch) * reach;
-      const float mass = 0.55F * noise(wx * 0.9F, wy * 0.9F, 95U) +
-                         0.30F * noise(wx * 2.3F, wy * 2.3F, 96U) +
-                         0.15F * noise(wx * 5.9F, wy * 5.9F, 97U);
+      const float mass = 0.55F * noise(wx * 0.9F, wy * 0.9F, air) +
+                         0.30F * noise(wx * 2.3F, wy * 2.3F, air + 1U) +
+                         0.15F * noise(wx * 5.9F, wy * 5.9F, air + 2U);
       const float edge = 0.82F - 0.62F * light.cloud_cover;
       const float cover = smooth(edge - 0.06F, edge + 0.2F, mass) * smooth(0.0F, 0.12F, slope);
       sky = mix(sky, light.cloud * (0.72F + 0.45F * (1.0F - mass)), 0.9F * cover);
