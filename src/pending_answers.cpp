@@ -94,11 +94,10 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
 /// alike. Where it is of this drive, until it was found for the first time: many drives never come
 /// back.
 double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
-  constexpr double of_another_drive = 0.5;
-  constexpr double of_a_first_loop = 0.25;
+  constexpr double more = 0.5;
   const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
-  if (of_this_drive) return last_found_ ? 0.0 : of_a_first_loop;
-  return of_another_drive * (1.0 - found_lately(newest));
+  if (of_this_drive) return last_found_ ? 0.0 : more;
+  return more * (1.0 - found_lately(newest));
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
