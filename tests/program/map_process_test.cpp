@@ -265,6 +265,22 @@ TEST_F(MapProcess, ADiskThatStallsKeepsNoFrameWaiting) {
   EXPECT_EQ(run("map check m.seqloop").exit_code, 0);
   EXPECT_GT(sessions("m.seqloop").at("one").frames, frames / 2);
 }
+
+TEST_F(MapProcess, AStallThatOutlastsTheDriveEndsWithAWord) {
+  Process process(drive("m.seqloop", "one", {"--fps", "200"}), file("lines"), file("err"), [&] {
+    ::setenv("LD_PRELOAD", SEQLOOP_STALLING_DISK, 1);
+    ::setenv("SEQLOOP_STALL", file("stall").c_str(), 1);
+  });
+  ASSERT_TRUE(says("lines", "\"saved\":2")) << test::read_all(file("err"));
+  folder_.write("stall", "");
+  EXPECT_TRUE(says("lines", "\"newest\":" + std::to_string(frames - 1)));
+  std::filesystem::remove(file("stall"));
+  EXPECT_EQ(process.wait(), 0) << test::read_all(file("err"));
+  const std::string told = test::read_all(file("err"));
+  EXPECT_NE(told.find("the run goes on"), std::string::npos) << told;
+  EXPECT_NE(told.find("what was missing is saved"), std::string::npos) << told;
+  EXPECT_EQ(sessions("m.seqloop").at("one").frames, frames);
+}
 #endif
 
 }  // namespace

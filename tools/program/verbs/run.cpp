@@ -292,6 +292,9 @@ void run(const RunSettings& settings, Faults faults) {
     for (const std::string& note : setup.loops->notes()) say("{}", note);
     setup.loops->commit();
   }
+  if (setup.map && !unsaved) {
+    while (const auto news = setup.map->trouble()) say("{}", *news);
+  }
   if (setup.map) say("{}: {}", settings.map.file.string(), setup.map->summary());
   if (unwritten) std::rethrow_exception(unwritten);
   if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
