@@ -24,6 +24,13 @@ run_tests() {
   local preset=$1
   shift
   echo "== test $preset $*"
+  # Labels go by names: of two tests called alike, both would have those of either.
+  local twice
+  twice=$(ctest --test-dir "build/$preset" --show-only | sed -n 's/^ *Test *#[0-9]*: //p' | sort | uniq -d)
+  if [ -n "$twice" ]; then
+    printf 'tests called alike: name one of each otherwise, in tests/CMakeLists.txt\n%s\n' "$twice"
+    return 1
+  fi
   ctest --test-dir "build/$preset" --parallel $((jobs + 1)) --output-on-failure --no-tests=error "$@" \
     >"build/$preset-tests.log" || { cat "build/$preset-tests.log"; return 1; }
   # Skipped tests say why in the log.
