@@ -25,6 +25,11 @@ MatcherConfig settings(Use use) {
   return config;
 }
 
+/// Steps whose answers are not asked for.
+void take(Detector& detector, std::span<const std::vector<float>> frames) {
+  for (const auto& descriptor : frames) static_cast<void>(detector.step(descriptor));
+}
+
 struct Said {
   std::vector<Answer> answers;
   std::vector<FrameReport> reports;
@@ -243,7 +248,7 @@ TEST(PlaceBelief, JumpsSpeakForTheMapUntilTheRobotHasLeftIt) {
   PlaceMap map = map_of(way(7, 400, 0.5F, 1), config);
   Detector detector(config, map);
   const auto speaks_after = [&](std::span<const std::vector<float>> frames) {
-    for (const auto& descriptor : frames) static_cast<void>(detector.step(descriptor));
+    take(detector, frames);
     return detector.evidence() ? detector.evidence()->jumps : -1.0;
   };
   const auto carry_about = [&] {
@@ -288,9 +293,8 @@ std::size_t found_again_after(std::size_t away, Use use) {
     fill(map, way(seed, 400, 4.0F, 1));
     Detector detector(config, map);
     const oracle::Vectors same = way(seed, 400, 4.0F, 2);
-    const oracle::Vectors other = way(seed + 100, away, 4.0F, 1);
-    for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
-    for (const auto& descriptor : other) static_cast<void>(detector.step(descriptor));
+    take(detector, std::span(same).first(100));
+    take(detector, way(seed + 100, away, 4.0F, 1));
     steps += steps_until_found(detector, std::span(same).subspan(200), 100 + away);
   }
   return steps;
@@ -323,13 +327,10 @@ TEST(PlaceBelief, ADrivesFirstLoopHasToBeSeenBetterThanItsOthers) {
     const MatcherConfig config = settings(Use::close_loops);
     PlaceMap map(config, {1200, size});
     Detector detector(config, map);
-    const auto drive = [&](const oracle::Vectors& frames) {
-      for (const auto& descriptor : frames) static_cast<void>(detector.step(descriptor));
-    };
-    drive(way(seed, 400, 4.0F, 1));
+    take(detector, way(seed, 400, 4.0F, 1));
     const oracle::Vectors same = way(seed, 400, 4.0F, 2);
     const std::size_t steps = steps_until_found(detector, std::span(same).subspan(100), 400);
-    drive(way(seed + 100, 300, 4.0F, 1));
+    take(detector, way(seed + 100, 300, 4.0F, 1));
     first += steps;
     later += steps_until_found(detector, std::span(same).subspan(250), 700 + steps);
   }
@@ -349,10 +350,8 @@ TEST(PlaceBelief, IsBornWhereTheBestLineLeadsIfItWasFoundLately) {
       PlaceMap map = map_of(way(seed, 1500, noise, 1), config);
       Detector detector(config, map);
       const oracle::Vectors same = way(seed, 1500, noise, 2);
-      for (std::size_t i = 0; i < 100; ++i) static_cast<void>(detector.step(same[i]));
-      for (const auto& descriptor : way(seed + 100, away, 0.5F, 1)) {
-        static_cast<void>(detector.step(descriptor));
-      }
+      take(detector, std::span(same).first(100));
+      take(detector, way(seed + 100, away, 0.5F, 1));
       bool found = false;
       for (std::size_t i = 800; i < 1000 && !found; ++i) {
         ++steps;
@@ -513,7 +512,7 @@ TEST(PlaceBelief, NothingSpeaksForAFrameThatWasNotSeenOrADriveThatHasEnded) {
   const MatcherConfig config = settings(Use::localise);
   PlaceMap map = map_of(drive, config);
   Detector detector(config, map);
-  for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+  take(detector, drive);
   EXPECT_TRUE(detector.evidence());
   static_cast<void>(detector.step(std::vector<float>(size, std::nanf(""))));
   EXPECT_FALSE(detector.evidence());
@@ -522,7 +521,7 @@ TEST(PlaceBelief, NothingSpeaksForAFrameThatWasNotSeenOrADriveThatHasEnded) {
   for (const std::uint64_t frames : {5U, 100U}) {
     detector.skip(frames);
     EXPECT_FALSE(detector.evidence()) << frames;
-    for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+    take(detector, drive);
     EXPECT_TRUE(detector.evidence()) << frames;
   }
   static_cast<void>(detector.finish());

@@ -106,6 +106,14 @@ class MapProcess : public test::Program {
     return words;
   }
 
+#ifdef SEQLOOP_STALLING_DISK
+  /// In a drive's process: its disk takes nothing while there is a file `stall`.
+  void use_stalling_disk() const {
+    ::setenv("LD_PRELOAD", SEQLOOP_STALLING_DISK, 1);
+    ::setenv("SEQLOOP_STALL", file("stall").c_str(), 1);
+  }
+#endif
+
   /// Waits until a file has these words. @return whether it ever had
   [[nodiscard]] bool says(const std::string& name, const std::string& words) const {
     for (int n = 0; n < 6'000; ++n) {
@@ -249,10 +257,8 @@ TEST_F(MapProcess, AFullDiskThatHasRoomAgainTakesWhatIsMissing) {
 
 #ifdef SEQLOOP_STALLING_DISK
 TEST_F(MapProcess, ADiskThatStallsKeepsNoFrameWaiting) {
-  Process process(drive("m.seqloop", "one", {"--fps", "100"}), file("lines"), file("err"), [&] {
-    ::setenv("LD_PRELOAD", SEQLOOP_STALLING_DISK, 1);
-    ::setenv("SEQLOOP_STALL", file("stall").c_str(), 1);
-  });
+  Process process(drive("m.seqloop", "one", {"--fps", "100"}), file("lines"), file("err"),
+                  [&] { use_stalling_disk(); });
   ASSERT_TRUE(says("lines", "\"saved\":2")) << test::read_all(file("err"));
   folder_.write("stall", "");
   EXPECT_TRUE(says("err", "the run goes on")) << test::read_all(file("err"));
@@ -267,10 +273,8 @@ TEST_F(MapProcess, ADiskThatStallsKeepsNoFrameWaiting) {
 }
 
 TEST_F(MapProcess, AStallThatOutlastsTheDriveEndsWithAWord) {
-  Process process(drive("m.seqloop", "one", {"--fps", "200"}), file("lines"), file("err"), [&] {
-    ::setenv("LD_PRELOAD", SEQLOOP_STALLING_DISK, 1);
-    ::setenv("SEQLOOP_STALL", file("stall").c_str(), 1);
-  });
+  Process process(drive("m.seqloop", "one", {"--fps", "200"}), file("lines"), file("err"),
+                  [&] { use_stalling_disk(); });
   ASSERT_TRUE(says("lines", "\"saved\":2")) << test::read_all(file("err"));
   folder_.write("stall", "");
   EXPECT_TRUE(says("lines", "\"newest\":" + std::to_string(frames - 1)));
