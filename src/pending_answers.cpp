@@ -89,15 +89,17 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * waiting.on.where(waiting.left);
 }
 
-/// How much more the log-odds of the newest frame's row have to be. Where it is another drive's,
-/// and the robot was not found lately: it may be where nobody has driven before, and much looks
-/// alike. Where it is of this drive, until it was found for the first time: many drives never come
-/// back.
+/// How much more the log-odds of the newest frame's row have to be, since much looks alike. Where
+/// it is of this drive: many drives never come back to where they were; one that has will again,
+/// but most of its frames are of new places. Where it is another drive's, and the robot was not
+/// found lately: it may be where nobody has driven before.
 double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
-  constexpr double more = 0.5;
+  constexpr double of_a_first_loop = 2.0;
+  constexpr double of_other_loops = 0.7;
+  constexpr double of_other_drives = 0.5;
   const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
-  if (of_this_drive) return last_found_ ? 0.0 : more;
-  return more * (1.0 - found_lately(newest));
+  if (of_this_drive) return last_found_ ? of_other_loops : of_a_first_loop;
+  return of_other_drives * (1.0 - found_lately(newest));
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -113,7 +115,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
   const double best = belief.remember(log_odds(*evidence_));
-  const double right = trace_is_right(best - asked_of(map, newest));
+  evidence_->asked = asked_of(map, newest);
+  const double right = trace_is_right(best - evidence_->asked);
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
     at(frame).left = true;
   }

@@ -28,11 +28,6 @@ constexpr double coming_at_first = 0.1;
 constexpr double stands_out = 0.97;
 constexpr double where_it_leads = 0.25;
 
-// How much the best wrong sums vary at least. A drive through new places has wrong rows in store
-// that do better than those it has met.
-constexpr double least_variance = 1.25;
-constexpr double least_variance_of_new_places = 6.0;
-
 // How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows:
 // a hypothesis that slowed down quickly would linger beside the road. And the chance of a jump from
 // which on rows that go on at another pace than the robot are likelier to be of another place.
@@ -135,7 +130,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   if (by_line > 0.0) bear(*led_to, by_line);
   hand_over(*view.map);
   weigh(view, *scene);
-  judge(view, *scene, jumps, earlier_drives);
+  judge(view, *scene, jumps);
   return sketches_;
 }
 
@@ -366,8 +361,7 @@ void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
   for (std::size_t i = 0; i < count_; ++i) rows_[i].mass = result[i];
 }
 
-void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps,
-                        bool earlier_drives) noexcept {
+void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps) noexcept {
   const std::span<Hypothesis> rows = rows_.first(count_);
   const auto top = std::ranges::max_element(rows, {}, &Hypothesis::mass);
   if (top == rows.end()) {
@@ -408,17 +402,15 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps,
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   // Less than that says no more.
   constexpr double least_new = 1e-4;
-  const double varies = earlier_drives ? least_variance : least_variance_of_new_places;
   likeliest_ = Likeliest{top->row,
                          index,
                          {.odds = logarithm(sure) - logarithm(1.0 - sure),
                           .known = -logarithm(least_new + new_place_),
-                          .lead = wrong_.lead(top->gain, varies),
+                          .lead = wrong_.lead(top->gain),
                           .contrast = top->contrast,
                           .age = logarithm(1.0 + top->age),
                           .doubt = top->doubt,
-                          .jumps = jumps,
-                          .earlier_drives = earlier_drives}};
+                          .jumps = jumps}};
 }
 
 /// Another visit of the likeliest row's place takes over how the robot came here. Where the visit
@@ -456,7 +448,7 @@ double PlaceBelief::usual_gain() const noexcept {
 
 double PlaceBelief::remember(double odds) noexcept {
   constexpr double fading = 0.1;
-  constexpr double too_much = 3.5;
+  constexpr double too_much = 3.0;
   // Other visits of the place have had it from this row.
   if (!localises_ && likeliest_->evidence.doubt > too_much) {
     for (Hypothesis& at : rows_.first(count_)) at.past = std::min(at.past, odds);

@@ -184,7 +184,7 @@ class NaiveBelief {
     // 6.4, `best`
     const double here = remembered(evidence);
     double& past = rows_.at(likeliest).past;
-    if (!localises_ && evidence.doubt > 3.5) {
+    if (!localises_ && evidence.doubt > 3.0) {
       for (auto& [row, at] : rows_) at.past = std::min(at.past, here);
     }
     past = std::max(past - 0.1 * w, here);
@@ -254,12 +254,10 @@ class NaiveBelief {
       variance = (1.0 - a) * (variance + a * off * off);
     }
     big = std::clamp(big, 1e-12, 1.0 - 1e-12);
-    evidence.earlier_drives = earlier_drives_;
     evidence.jumps = jumps_;
     evidence.odds = std::log(big / (1.0 - big));
     evidence.known = -std::log(1e-4 + new_place);
-    evidence.lead =
-        (top->second.gain - mean) / std::sqrt(variance + (earlier_drives_ ? 1.25 : 6.0));
+    evidence.lead = (top->second.gain - mean) / std::sqrt(variance + 1.25);
     evidence.contrast = top->second.clear;
     evidence.age = std::log(1.0 + top->second.age);
     evidence.doubt = top->second.doubt;
@@ -303,7 +301,6 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ++judged;
     const Evidence& e = belief.likeliest()->evidence;
     ASSERT_EQ(belief.likeliest()->row, naive.likeliest);
-    ASSERT_EQ(e.earlier_drives, naive.evidence.earlier_drives);
     ASSERT_EQ(e.jumps, naive.evidence.jumps);
     ASSERT_NEAR(e.odds, naive.evidence.odds, 1e-3);
     ASSERT_NEAR(e.known, naive.evidence.known, 1e-6);
@@ -388,13 +385,15 @@ TEST(PlaceBeliefOracle, OfEarlierDrivesTwentyPlacesCount) {
   config.use = Use::close_loops;
   config.standardisation.on = false;
   const oracle::Vectors way = test::way(1, 60, 0.5F, 1, size);
-  for (const std::size_t earlier : {19U, 20U}) {
+  const auto new_place = [&](std::size_t earlier) {
     Seen seen(way, config, earlier);
     PlaceBelief belief(seen.memory.arena, config);
     static_cast<void>(belief.observe(seen.take(way.front()), 0.0));
-    ASSERT_TRUE(belief.likeliest());
-    EXPECT_EQ(belief.likeliest()->evidence.earlier_drives, earlier == 20U);
-  }
+    return belief.new_place();
+  };
+  EXPECT_LT(new_place(20), new_place(19) - 0.003);
+  EXPECT_EQ(new_place(19), new_place(0));
+  EXPECT_EQ(new_place(20), new_place(40));
 }
 
 TEST(PlaceBeliefOracle, OnAnUnknownOne) {

@@ -16,7 +16,7 @@ struct Evidence {
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
   double jumps = 0.0;     ///< the chance of a jump, if it was found on this map lately, 0 .. .5
-  bool earlier_drives = false;  ///< whether the map has 20 or more places of earlier drives
+  double asked = 0.0;     ///< what has to be left of the log-odds, since much looks alike
 };
 
 /// The log-odds that the row is right, by a trace that has been followed for long: a logistic
@@ -31,8 +31,7 @@ struct Evidence {
 [[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
   constexpr double least_odds = 2.0;
   if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
-  const double constant = e.earlier_drives ? -3.25 : -4.2;
-  return constant + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
+  return -3.25 + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
 }
 
 /// The log-odds that the row is right: either suffices. A robot that has been carried about on this
@@ -45,7 +44,7 @@ struct Evidence {
 
 /// The log-odds that the robot is there still, and was not carried away with the newest frames.
 [[nodiscard]] inline double log_odds_now(const Evidence& e) noexcept {
-  return std::min(log_odds(e), 6.0) - 6.0 * e.doubt;
+  return std::min(log_odds(e) - e.asked, 6.0) - 6.0 * e.doubt;
 }
 
 }  // namespace seqloop

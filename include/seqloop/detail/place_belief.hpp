@@ -144,7 +144,7 @@ class PlaceBelief {
                bool drives) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
-  void judge(const SceneView& view, const Scene& scene, double jumps, bool earlier_drives) noexcept;
+  void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
   void know_better(const PlaceMap& map, std::size_t index) noexcept;
 

@@ -53,8 +53,7 @@ class WrongRows {
   }
 
   /// How far a sum lies above the best wrong ones, in their deviations.
-  /// @param least_variance added to theirs; above 0
-  [[nodiscard]] double lead(double sum, double least_variance) const noexcept;
+  [[nodiscard]] double lead(double sum) const noexcept;
 
   [[nodiscard]] double mean() const noexcept { return now_.mean; }
 
