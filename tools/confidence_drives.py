@@ -8,6 +8,7 @@ from typing import Callable
 
 import numpy as np
 
+import bad_camera
 from loop_drives import GARDENS, NORDLAND, Tools, call, say
 
 GARAGE, GARAGE_TRUTH, FIRST_LAP = "garage_laps/images", "garage_laps/truth.csv", 211
@@ -43,12 +44,23 @@ class Maker:
     """Makes what drives consist of, once: what OUT/descriptors has is not made again."""
     tools: Tools
     out: pathlib.Path
+    camera: str | None = None  # which bad one has taken the pictures
+
+    def file(self, name: str) -> pathlib.Path:
+        return self.out / f"{name}{f'-by-{self.camera}' if self.camera else ''}.npy"
 
     def read(self, source: str, name: str) -> np.ndarray:
-        path = self.out / f"{name}.npy"
+        path = self.file(name)
         if not path.exists():
-            say(f"{name}: making descriptors")
-            self.tools.describe(source, path)
+            say(f"{path.stem}: making descriptors")
+            if self.camera:
+                taken = path.with_suffix(".pictures")
+                shutil.rmtree(taken, ignore_errors=True)
+                bad_camera.take_again(self.camera, self.tools.data / source, taken)
+                self.tools.describe(str(taken), path)
+                shutil.rmtree(taken)
+            else:
+                self.tools.describe(source, path)
         return np.load(path)
 
     def real(self, source: str) -> np.ndarray:
@@ -60,17 +72,17 @@ class Maker:
         another road where the drive closes loops."""
         parts = ["reference", "query"] if use == "localise" else ["drive"]
         name = f"street-{use}-{seed}" + (f"-{metres}" if metres != 1.0 else "")
-        files = [self.out / f"{name}-{part}.npy" for part in parts]
+        names = [f"{name}-{part}" for part in parts]
         folder, truth = self.out / f"{name}.pictures", self.out / f"{name}-truth.csv"
         kept = {"truth.csv": truth}
         if use == "loop":
             kept["near.csv"] = self.out / f"{name}-near.csv"
-        if not all(file.exists() for file in [*files, *kept.values()]):
+        if not all(file.exists() for file in [*map(self.file, names), *kept.values()]):
             say(f"{name}: drawing")
             jumps = ["--kidnaps", seed % 3] if use == "loop" else []
             call([self.tools.street, "--keep", "--quiet", "--drives", use, "--frames", frames,
                   "--length", frames * metres, "--seed", seed, "--out", folder, *jumps])
-        drives = [self.read(str(folder / part), file.stem) for part, file in zip(parts, files)]
+        drives = [self.read(str(folder / part), one) for part, one in zip(parts, names)]
         if folder.exists():
             for drawn, file in kept.items():
                 (folder / drawn).replace(file)

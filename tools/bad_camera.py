@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""A drive's pictures as a bad camera would have taken them. Used by tools/confidence."""
+import dataclasses
+import pathlib
+import zlib
+from typing import Callable
+
+import numpy as np
+from PIL import Image
+
+Picture = np.ndarray  # rows x columns x 3, grey levels from 0 to 255
+
+
+def slowly(frames: int, dice: np.random.Generator, within: int) -> np.ndarray:
+    """A value for each frame, with a deviation of 1, that forgets itself within so many frames."""
+    weights = np.exp(-np.arange(8 * within) / within)
+    values = np.convolve(dice.normal(size=frames + len(weights) - 1), weights, "valid")
+    return values / np.sqrt((weights**2).sum())
+
+
+@dataclasses.dataclass(frozen=True)
+class Shot:
+    """A frame's picture, and what chance has in store for it."""
+    picture: Picture
+    frame: int
+    dice: np.random.Generator  # the frame's own
+    of_drive: int  # where a generator that is the drive's begins
+    frames: int  # of the drive
+
+    def drive_dice(self) -> np.random.Generator:
+        return np.random.default_rng(self.of_drive)
+
+    def spot(self, row: float, column: float, radius: float) -> np.ndarray:
+        """1 in its centre, falling off as a Gaussian; in shares of height, width, and width."""
+        height, width, _ = self.picture.shape
+        down, across = np.mgrid[:height, :width]
+        squared = (down - row * height)**2 + (across - column * width)**2
+        return np.exp(-squared / (2 * (radius * width)**2))[..., None]
+
+
+def tiles(dice: np.random.Generator, down: int, across: int, height: int, width: int) -> Picture:
+    """Tiles of one grey level each, so many either way."""
+    levels = dice.integers(20, 200, (down, across)).astype(np.float32)
+    grey = levels[np.arange(height) * down // height][:, np.arange(width) * across // width]
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
+def bumper(shot: Shot) -> Picture:
+    """The robot's own parts fill the lowest three tenths, the same on every drive."""
+    height, width, _ = shot.picture.shape
+    first = int(0.7 * height)
+    own = tiles(np.random.default_rng(7), 2, 12, height - first, width)
+    return np.concatenate([shot.picture[:first], own])
+
+
+def crowd(shot: Shot) -> Picture:
+    """Half of the time, for 10 to 39 frames on end, somebody is before a third of the view."""
+    dice, begins = shot.drive_dice(), 0
+    while begins <= shot.frame:
+        begins += int(dice.integers(20, 50))
+        goes = begins + int(dice.integers(10, 40))
+        height, width, _ = shot.picture.shape
+        first = int(dice.uniform(0.0, 0.7) * width)
+        clothes = tiles(dice, 4, 1, height - height // 10, int(0.3 * width))
+        if begins <= shot.frame < goes:
+            picture = shot.picture.copy()
+            picture[height // 10:, first:first + clothes.shape[1]] = clothes
+            return picture
+        begins = goes
+    return shot.picture
+
+
+def dirt(shot: Shot) -> Picture:
+    """Eight blurred spots on the lens, others on each drive."""
+    dice, covered = shot.drive_dice(), np.zeros((*shot.picture.shape[:2], 1))
+    for _ in range(8):
+        spot = shot.spot(dice.uniform(), dice.uniform(), dice.uniform(0.04, 0.12))
+        covered = np.maximum(covered, dice.uniform(0.6, 1.0) * spot)
+    return shot.picture * (1 - covered) + 90 * covered
+
+
+def flicker(shot: Shot) -> Picture:
+    """Exposure changes by a third from frame to frame, as under lamps."""
+    return shot.picture * np.exp(shot.dice.normal(0.0, 0.36))
+
+
+def haze(shot: Shot) -> Picture:
+    """A quarter of the contrast, and bright."""
+    return 140 + shot.picture / 4
+
+
+def lamp(shot: Shot) -> Picture:
+    """The robot's own lamp: a bright spot that sways, the rest darker."""
+    dice = shot.drive_dice()
+    down, across = (slowly(shot.frames, dice, 60)[shot.frame] for _ in range(2))
+    return 0.6 * shot.picture + 200 * shot.spot(0.6 + 0.05 * down, 0.5 + 0.1 * across, 0.15)
+
+
+def coarse(shot: Shot) -> Picture:
+    """A fifth of the pixels either way."""
+    height, width, _ = shot.picture.shape
+    image = Image.fromarray(shot.picture.astype(np.uint8))
+    small = image.resize((max(8, width // 5), max(4, height // 5)), Image.Resampling.BOX)
+    return np.asarray(small.resize((width, height), Image.Resampling.BILINEAR), np.float32)
+
+
+def noise(shot: Shot) -> Picture:
+    """20 grey levels."""
+    return shot.picture + shot.dice.normal(0.0, 20.0, shot.picture.shape)
+
+
+def shake(shot: Shot) -> Picture:
+    """Turned by 2 degrees, and moved by a thirtieth, from frame to frame."""
+    height, width, _ = shot.picture.shape
+    turn, across, down = shot.dice.normal(size=3)
+    image = Image.fromarray(shot.picture.astype(np.uint8))
+    moved = image.rotate(2 * turn, Image.Resampling.BILINEAR,
+                         translate=(int(0.03 * width * across), int(0.03 * height * down)))
+    return np.asarray(moved, np.float32)
+
+
+def aside(shot: Shot) -> Picture:
+    """Slowly looks to either side, by up to an eighth of its width; the border's column goes on."""
+    width = shot.picture.shape[1]
+    by = slowly(shot.frames, shot.drive_dice(), 60)[shot.frame]
+    columns = np.arange(width) + int(np.clip(0.05 * by, -0.125, 0.125) * width)
+    return shot.picture[:, np.clip(columns, 0, width - 1)]
+
+
+KINDS: dict[str, Callable[[Shot], Picture]] = {
+    kind.__name__: kind
+    for kind in (aside, bumper, coarse, crowd, dirt, flicker, haze, lamp, noise, shake)}
+
+
+def take_again(kind: str, drive: pathlib.Path, out: pathlib.Path) -> None:
+    """Makes a folder with the pictures of another, in the order of their names."""
+    out.mkdir(parents=True)
+    files = sorted(drive.iterdir())
+    of_drive = zlib.crc32(f"{drive.parent.name}/{drive.name}".encode())
+    for frame, file in enumerate(files):
+        with Image.open(file) as image:
+            picture = np.asarray(image.convert("RGB"), np.float32)
+        dice = np.random.default_rng([of_drive, frame])
+        bad = KINDS[kind](Shot(picture, frame, dice, of_drive, len(files)))
+        Image.fromarray(np.clip(bad, 0, 255).astype(np.uint8)).save(
+            out / f"{frame:06}.png", compress_level=1)
