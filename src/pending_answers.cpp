@@ -59,7 +59,7 @@ void PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   forget_evidence();
-  at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0,
+  at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0, 0.0,
                {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0.0,   0, {}};
   end_ = frame + 1;
 }
@@ -117,6 +117,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const double best = belief.remember(log_odds(*evidence_));
   evidence_->asked = asked_of(map, newest);
   const double right = trace_is_right(best - evidence_->asked);
+  const double same_place = trace_is_right(best);
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
     at(frame).left = true;
   }
@@ -142,8 +143,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
     Waiting& frame = at(newest - back);
     if (!frame.waits || frame.frame != newest - back) continue;
     look_back(map.order(), frame,
-              {trace[back].row, right, on[back], carried.empty() ? on[back] : carried[back], back,
-               back >= born});
+              {trace[back].row, right, same_place, on[back],
+               carried.empty() ? on[back] : carried[back], back, back >= born});
   }
   return sketches;
 }
@@ -173,7 +174,7 @@ std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, st
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
                                const LookedBack& back) noexcept {
-  const auto& [row, right, on, carried, lag, before_birth] = back;
+  const auto& [row, right, same_place, on, carried, lag, before_birth] = back;
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
@@ -186,6 +187,7 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
     }
   }
   waiting.right = same ? std::max(waiting.right, right) : right;
+  waiting.same_place = same ? std::max(waiting.same_place, same_place) : same_place;
   waiting.on = on;
   waiting.carried = carried;
   waiting.lag = lag;
@@ -323,9 +325,15 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameS
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
   answer.gate = sure ? Gate::match : is_new ? Gate::new_place : Gate::unsure;
-  // The frame is a place too, unless the map was full.
-  constexpr auto likely = static_cast<float>(PlaceMap::likely);
-  if (!grows_ || answer.probability < likely || waiting.row >= map.size()) return;
+  if (grows_) link(map, steps, waiting);
+}
+
+/// Where frame and row show one place, they are visits of it. That is not asked for more, as an
+/// answer is: a place whose visits are not known to be one looks less sure with each of them.
+void PendingAnswers::link(PlaceMap& map, const FrameSteps& steps, Waiting waiting) noexcept {
+  waiting.right = waiting.same_place;
+  if (calibrated(told(map, waiting)) < PlaceMap::likely || waiting.row >= map.size()) return;
+  // The frame is a place, too, unless the map was full.
   const std::uint64_t frame = steps.frame_of(waiting.frame);
   const std::size_t row = map.order().row_of_frame(frame);
   if (row < map.size() && map.order().frame(row) == frame) map.link(row, waiting.row);

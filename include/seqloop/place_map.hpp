@@ -126,9 +126,9 @@ class PlaceMap {
   static constexpr std::size_t most_between = 40;
 
   /// Two rows are visits of one place. Rows between this one and the last that was linked are too,
-  /// where both lie close together. A detector that decides by probability links what is `likely`,
-  /// at most `patience` frames and as many rows later. Work: as many rows as lie between,
-  /// `most_between` at most. Allocates: never.
+  /// where both lie close together. A detector that decides by probability links what is `likely`
+  /// by its frames alone, at most `patience` frames and as many rows later. Work: as many rows as
+  /// lie between, `most_between` at most. Allocates: never.
   void link(std::size_t row, std::size_t earlier) noexcept;
 
   /// The number of the first place that this one is a visit of; its own where it was not linked.

@@ -16,7 +16,7 @@ struct Evidence {
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
   double jumps = 0.0;     ///< the chance of a jump, if it was found on this map lately, 0 .. .5
-  double asked = 0.0;     ///< what has to be left of the log-odds, since much looks alike
+  double asked = 0.0;     ///< how much more the log-odds have to be, since much looks alike
 };
 
 /// The log-odds that the row is right, by a trace that has been followed for long: a logistic
@@ -42,7 +42,8 @@ struct Evidence {
   return std::max(log_odds_followed(e), log_odds_alone(e)) + carried_about;
 }
 
-/// The log-odds that the robot is there still, and was not carried away with the newest frames.
+/// The log-odds that the robot is there still, and was not carried away with the newest frames,
+/// less what is asked.
 [[nodiscard]] inline double log_odds_now(const Evidence& e) noexcept {
   return std::min(log_odds(e) - e.asked, 6.0) - 6.0 * e.doubt;
 }

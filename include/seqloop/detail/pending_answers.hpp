@@ -124,6 +124,7 @@ class PendingAnswers {
     bool before_birth;      // of the trace, which was followed back
     std::size_t row;        // there
     double right;           // that the trace is right: the most that was ever said
+    double same_place;      // the same, with nothing asked besides
     TraceSpan::On on;       // that the frame lies on it
     TraceSpan::On carried;  // the same, if the robot is carried away as often as it was
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
@@ -138,6 +139,7 @@ class PendingAnswers {
   struct LookedBack {
     std::size_t row;
     double right;           // that the trace is right
+    double same_place;      // as `Waiting` has it
     TraceSpan::On on;       // that the frame lies on it
     TraceSpan::On carried;  // as `Waiting` has it
     std::uint64_t lag;      // frames that have come since
@@ -172,6 +174,7 @@ class PendingAnswers {
                             std::uint64_t frame) noexcept;
   void give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
             Waiting& waiting) noexcept;
+  void link(PlaceMap& map, const FrameSteps& steps, Waiting waiting) noexcept;
 
   const Trajectories* trajectories_;
   std::size_t patience_;

@@ -145,7 +145,8 @@ void MapWriter::settle(std::uint64_t end) noexcept {
     const bool likely = frame.probability >= PlaceMap::likely;
     if (likely) last_probability_ = frame.probability;
     std::uint64_t first = map_->first_visit(*row);
-    double probability = likely ? frame.probability : last_probability_;
+    double probability =
+        likely ? frame.probability : std::max(frame.probability, last_probability_);
     if (first == added.record.number) {
       const auto other = order.row_of_number(frame.place);
       if (frame.probability < enough_for_later || !other) continue;
