@@ -2,11 +2,12 @@
 """A drive's pictures as a bad camera would have taken them. Used by tools/confidence."""
 import dataclasses
 import pathlib
+import re
 import zlib
 from typing import Callable
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageOps
 
 Picture = np.ndarray  # rows x columns x 3, grey levels from 0 to 255
 
@@ -54,17 +55,17 @@ def bumper(shot: Shot) -> Picture:
 
 
 def crowd(shot: Shot) -> Picture:
-    """Half of the time, for 10 to 39 frames on end, somebody is before a third of the view."""
+    """Half of the time, for 10 to 39 frames on end, somebody hides a quarter of the view."""
     dice, begins = shot.drive_dice(), 0
+    height, width, _ = shot.picture.shape
     while begins <= shot.frame:
-        begins += int(dice.integers(20, 50))
+        begins += int(dice.integers(10, 40))
         goes = begins + int(dice.integers(10, 40))
-        height, width, _ = shot.picture.shape
-        first = int(dice.uniform(0.0, 0.7) * width)
-        clothes = tiles(dice, 4, 1, height - height // 10, int(0.3 * width))
+        first = int(dice.uniform(0.0, 0.75) * width)
+        clothes = tiles(dice, 4, 1, height, width // 4)
         if begins <= shot.frame < goes:
             picture = shot.picture.copy()
-            picture[height // 10:, first:first + clothes.shape[1]] = clothes
+            picture[:, first:first + width // 4] = clothes
             return picture
         begins = goes
     return shot.picture
@@ -80,7 +81,7 @@ def dirt(shot: Shot) -> Picture:
 
 
 def flicker(shot: Shot) -> Picture:
-    """Exposure changes by a third from frame to frame, as under lamps."""
+    """Exposure changes from frame to frame, with a deviation of a third."""
     return shot.picture * np.exp(shot.dice.normal(0.0, 0.36))
 
 
@@ -97,25 +98,26 @@ def lamp(shot: Shot) -> Picture:
 
 
 def coarse(shot: Shot) -> Picture:
-    """A fifth of the pixels either way."""
+    """24 x 12 pixels."""
     height, width, _ = shot.picture.shape
     image = Image.fromarray(shot.picture.astype(np.uint8))
-    small = image.resize((max(8, width // 5), max(4, height // 5)), Image.Resampling.BOX)
+    small = image.resize((24, 12), Image.Resampling.BOX)
     return np.asarray(small.resize((width, height), Image.Resampling.BILINEAR), np.float32)
 
 
 def noise(shot: Shot) -> Picture:
-    """20 grey levels."""
+    """Each pixel's deviation is 20 grey levels. Little is left of it where pictures are large."""
     return shot.picture + shot.dice.normal(0.0, 20.0, shot.picture.shape)
 
 
 def shake(shot: Shot) -> Picture:
-    """Turned by 2 degrees, and moved by a thirtieth, from frame to frame."""
+    """Turned and moved from frame to frame, with deviations of 2 degrees and of 3 hundredths of
+    width and height. What comes into view is black."""
     height, width, _ = shot.picture.shape
     turn, across, down = shot.dice.normal(size=3)
     image = Image.fromarray(shot.picture.astype(np.uint8))
     moved = image.rotate(2 * turn, Image.Resampling.BILINEAR,
-                         translate=(int(0.03 * width * across), int(0.03 * height * down)))
+                         translate=(round(0.03 * width * across), round(0.03 * height * down)))
     return np.asarray(moved, np.float32)
 
 
@@ -132,14 +134,21 @@ KINDS: dict[str, Callable[[Shot], Picture]] = {
     for kind in (aside, bumper, coarse, crowd, dirt, flicker, haze, lamp, noise, shake)}
 
 
+def by_numbers(file: pathlib.Path) -> list:
+    """What names are sorted by: f2 comes before f10."""
+    return [(int(part), "") if part.isdecimal() else (-1, part)
+            for part in re.split(r"(\d+)", file.name)]
+
+
 def take_again(kind: str, drive: pathlib.Path, out: pathlib.Path) -> None:
     """Makes a folder with the pictures of another, in the order of their names."""
     out.mkdir(parents=True)
-    files = sorted(drive.iterdir())
+    files = sorted((file for file in drive.iterdir()
+                    if file.is_file() and not file.name.startswith(".")), key=by_numbers)
     of_drive = zlib.crc32(f"{drive.parent.name}/{drive.name}".encode())
     for frame, file in enumerate(files):
         with Image.open(file) as image:
-            picture = np.asarray(image.convert("RGB"), np.float32)
+            picture = np.asarray(ImageOps.exif_transpose(image).convert("RGB"), np.float32)
         dice = np.random.default_rng([of_drive, frame])
         bad = KINDS[kind](Shot(picture, frame, dice, of_drive, len(files)))
         Image.fromarray(np.clip(bad, 0, 255).astype(np.uint8)).save(

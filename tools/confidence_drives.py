@@ -46,8 +46,11 @@ class Maker:
     out: pathlib.Path
     camera: str | None = None  # which bad one has taken the pictures
 
+    def named(self, name: str) -> str:
+        return f"{name}-by-{self.camera}" if self.camera else name
+
     def file(self, name: str) -> pathlib.Path:
-        return self.out / f"{name}{f'-by-{self.camera}' if self.camera else ''}.npy"
+        return self.out / f"{self.named(name)}.npy"
 
     def read(self, source: str, name: str) -> np.ndarray:
         path = self.file(name)
@@ -56,9 +59,11 @@ class Maker:
             if self.camera:
                 taken = path.with_suffix(".pictures")
                 shutil.rmtree(taken, ignore_errors=True)
-                bad_camera.take_again(self.camera, self.tools.data / source, taken)
-                self.tools.describe(str(taken), path)
-                shutil.rmtree(taken)
+                try:
+                    bad_camera.take_again(self.camera, self.tools.data / source, taken)
+                    self.tools.describe(str(taken), path)
+                finally:
+                    shutil.rmtree(taken)
             else:
                 self.tools.describe(source, path)
         return np.load(path)
