@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/visit_finder.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace seqloop {
@@ -34,11 +35,16 @@ VisitFinder::VisitFinder(const MatcherConfig& config, const PlaceMap& map, std::
     : map_(beside(to_close_loops(config), map, places)), detector_(to_close_loops(config), map_) {}
 
 void VisitFinder::take(std::span<const float> descriptor) noexcept {
-  if (map_.size() < map_.capacity()) static_cast<void>(detector_.step(descriptor));
+  if (map_.size() < map_.capacity()) note(detector_.step(descriptor).answers);
+}
+
+void VisitFinder::note(std::span<const Answer> answers) noexcept {
+  comes_back_ = comes_back_ || std::ranges::count(answers, Gate::match, &Answer::gate) > 0;
 }
 
 void VisitFinder::link(PlaceMap& map) noexcept {
-  static_cast<void>(detector_.finish());
+  note(detector_.finish());
+  if (!comes_back_) return;
   const PlaceOrder& own = map_.order();
   const PlaceOrder& order = map.order();
   // The same frames are places as in the map's newest session.

@@ -31,13 +31,17 @@ class VisitFinder {
   /// Work: a step of a detector that closes loops. Allocates: never.
   void take(std::span<const float> descriptor) noexcept;
 
-  /// Links the places of the map's newest session, which is that drive; once, at its end.
+  /// Links the places of the map's newest session, which is that drive; once, at its end. None, if
+  /// no answer was accepted: many drives never come back to where they were, and much looks alike.
   /// Work: the places times their logarithm. Allocates: never.
   void link(PlaceMap& map) noexcept;
 
  private:
+  void note(std::span<const Answer> answers) noexcept;
+
   PlaceMap map_;
   Detector detector_;
+  bool comes_back_ = false;
 };
 
 }  // namespace seqloop

@@ -62,6 +62,36 @@ TEST(VisitFinder, LinksNothingWhereNothingComesTwice) {
   EXPECT_EQ(linked(map, lap, lap), 0U);
 }
 
+/// A revisit of 40 frames that see little is sure enough to be linked, but for a first loop it is
+/// not sure enough to be accepted: such a drive may as well have come to a place that looks alike.
+TEST(VisitFinder, LinksNothingOfADriveOfWhichNoLoopIsAccepted) {
+  std::size_t linked_while_driven = 0;
+  for (const std::uint32_t seed : {3U, 6U}) {
+    Vectors drive = test::way(seed, 300, 4.0F, 1, 256);
+    const Vectors again = test::way(seed, 300, 4.0F, 2, 256);
+    drive.insert(drive.end(), again.begin() + 100, again.begin() + 140);
+    const auto visits = [](const PlaceMap& map) {
+      std::size_t count = 0;
+      for (std::size_t row = 0; row < map.size(); ++row) {
+        count += static_cast<std::size_t>(map.first_visit(row) != map.order().number(row));
+      }
+      return count;
+    };
+    MatcherConfig closing;
+    closing.use = Use::close_loops;
+    closing.standardisation.on = false;
+    PlaceMap own(closing, {drive.size(), 256});
+    Detector detector(closing, own);
+    for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+    static_cast<void>(detector.finish());
+    linked_while_driven += visits(own);
+    MatcherConfig localising;
+    localising.standardisation.on = false;
+    EXPECT_EQ(visits(map_of(drive, localising, drive.size())), 0U) << seed;
+  }
+  EXPECT_GT(linked_while_driven, 60U);
+}
+
 /// All laps but one would count as wrong rows, as good as the right one.
 TEST(VisitFinder, LetsARobotLocaliseInLaps) {
   const Vectors query = laps(1, 9);

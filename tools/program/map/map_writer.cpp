@@ -92,6 +92,7 @@ void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t in
 /// Notes where frames were, and how sure that is.
 void MapWriter::weigh(std::span<const Answer> answers) noexcept {
   for (const Answer& answer : answers) {
+    comes_back_ = comes_back_ || answer.gate == Gate::match;
     if (answer.match && !std::isnan(answer.probability)) {
       came(answer.frame).probability = static_cast<double>(answer.probability);
       came(answer.frame).place = answer.match->place;
@@ -144,7 +145,10 @@ void MapWriter::settle(std::uint64_t end) noexcept {
     constexpr double enough_for_later = 0.5;
     const bool likely = frame.probability >= PlaceMap::likely;
     if (likely) last_probability_ = frame.probability;
-    std::uint64_t first = map_->first_visit(*row);
+    // What the map took for a visit by its frames alone may but look alike, as long as the drive
+    // came back to no place for sure.
+    const bool linked = likely || comes_back_;
+    std::uint64_t first = linked ? map_->first_visit(*row) : added.record.number;
     double probability =
         likely ? frame.probability : std::max(frame.probability, last_probability_);
     if (first == added.record.number) {

@@ -128,6 +128,7 @@ class MapWriter {
   std::uint64_t counted_ = 0;                 // frames
   std::uint64_t settled_ = 0;                 // places that have been
   double last_probability_ = 0.0;             // of a link
+  bool comes_back_ = false;                   // whether an answer of this drive was accepted
   std::int64_t stalled_ns_ = 0;               // `saving_since_ns_` of the stall that was told
   std::vector<Came> came_;                    // [kept], a ring by frame
   std::vector<std::uint64_t> source_frames_;  // [capacity], by slot
