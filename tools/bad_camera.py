@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A drive's pictures as a bad camera would have taken them. Used by tools/confidence."""
 import dataclasses
+import functools
 import pathlib
 import re
 import zlib
@@ -39,19 +40,26 @@ class Shot:
         return np.exp(-squared / (2 * (radius * width)**2))[..., None]
 
 
-def tiles(dice: np.random.Generator, down: int, across: int, height: int, width: int) -> Picture:
-    """Tiles of one grey level each, so many either way."""
-    levels = dice.integers(20, 200, (down, across)).astype(np.float32)
+def tiles(levels: np.ndarray, height: int, width: int) -> Picture:
+    """A picture of tiles that have these grey levels."""
+    down, across = levels.shape
     grey = levels[np.arange(height) * down // height][:, np.arange(width) * across // width]
-    return np.repeat(grey[..., None], 3, axis=2)
+    return np.repeat(grey[..., None].astype(np.float32), 3, axis=2)
+
+
+@functools.cache
+def sways(of_drive: int, frames: int) -> np.ndarray:
+    """Down and across, for each frame of a drive, as `slowly` has it."""
+    dice = np.random.default_rng(of_drive)
+    return np.stack([slowly(frames, dice, 60) for _ in range(2)])
 
 
 def bumper(shot: Shot) -> Picture:
     """The robot's own parts fill the lowest three tenths, the same on every drive."""
     height, width, _ = shot.picture.shape
     first = int(0.7 * height)
-    own = tiles(np.random.default_rng(7), 2, 12, height - first, width)
-    return np.concatenate([shot.picture[:first], own])
+    levels = np.random.default_rng(7).integers(20, 200, (2, 12))
+    return np.concatenate([shot.picture[:first], tiles(levels, height - first, width)])
 
 
 def crowd(shot: Shot) -> Picture:
@@ -62,10 +70,10 @@ def crowd(shot: Shot) -> Picture:
         begins += int(dice.integers(10, 40))
         goes = begins + int(dice.integers(10, 40))
         first = int(dice.uniform(0.0, 0.75) * width)
-        clothes = tiles(dice, 4, 1, height, width // 4)
+        clothes = dice.integers(20, 200, (4, 1))
         if begins <= shot.frame < goes:
             picture = shot.picture.copy()
-            picture[:, first:first + width // 4] = clothes
+            picture[:, first:first + width // 4] = tiles(clothes, height, width // 4)
             return picture
         begins = goes
     return shot.picture
@@ -92,8 +100,7 @@ def haze(shot: Shot) -> Picture:
 
 def lamp(shot: Shot) -> Picture:
     """The robot's own lamp: a bright spot that sways, the rest darker."""
-    dice = shot.drive_dice()
-    down, across = (slowly(shot.frames, dice, 60)[shot.frame] for _ in range(2))
+    down, across = sways(shot.of_drive, shot.frames)[:, shot.frame]
     return 0.6 * shot.picture + 200 * shot.spot(0.6 + 0.05 * down, 0.5 + 0.1 * across, 0.15)
 
 
@@ -124,7 +131,7 @@ def shake(shot: Shot) -> Picture:
 def aside(shot: Shot) -> Picture:
     """Slowly looks to either side, by up to an eighth of its width; the border's column goes on."""
     width = shot.picture.shape[1]
-    by = slowly(shot.frames, shot.drive_dice(), 60)[shot.frame]
+    by = sways(shot.of_drive, shot.frames)[0, shot.frame]
     columns = np.arange(width) + int(np.clip(0.05 * by, -0.125, 0.125) * width)
     return shot.picture[:, np.clip(columns, 0, width - 1)]
 

@@ -320,14 +320,20 @@ TEST(PlaceBelief, MoreIsAskedOfADriveThatIsAddedToo) {
   EXPECT_GT(late, soon + 20);
 }
 
+/// Closes the loops of its own drive.
+struct Robot {
+  MatcherConfig config = settings(Use::close_loops);
+  PlaceMap map{config, {1200, size}};
+  Detector detector{config, map};
+};
+
 /// Many drives never come back to where they were: one that has will again.
 TEST(PlaceBelief, ADrivesFirstLoopHasToBeSeenBetterThanItsOthers) {
   std::size_t first = 0;
   std::size_t later = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    const MatcherConfig config = settings(Use::close_loops);
-    PlaceMap map(config, {1200, size});
-    Detector detector(config, map);
+    Robot robot;
+    Detector& detector = robot.detector;
     take(detector, way(seed, 400, 4.0F, 1));
     const oracle::Vectors same = way(seed, 400, 4.0F, 2);
     const std::size_t steps = steps_until_found(detector, std::span(same).subspan(100), 400);
@@ -345,20 +351,18 @@ TEST(PlaceBelief, ADrivesFirstLoopHasToBeSeenBetterThanItsOthers) {
 TEST(PlaceBelief, LinksAVisitThatIsNotSureEnoughToBeAccepted) {
   std::size_t unsure_but_linked = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    const MatcherConfig config = settings(Use::close_loops);
-    PlaceMap map(config, {500, size});
-    Detector detector(config, map);
-    take(detector, way(seed, 300, 4.0F, 1));
+    Robot robot;
+    take(robot.detector, way(seed, 300, 4.0F, 1));
     std::size_t accepted = 0;
     const auto count = [&](std::span<const Answer> answers) {
       accepted += static_cast<std::size_t>(std::ranges::count(answers, Gate::match, &Answer::gate));
     };
     const oracle::Vectors again = way(seed, 300, 4.0F, 2);
-    for (std::size_t frame = 100; frame < 140; ++frame) count(detector.step(again[frame]).answers);
-    count(detector.finish());
+    for (std::size_t i = 100; i < 140; ++i) count(robot.detector.step(again[i]).answers);
+    count(robot.detector.finish());
     std::size_t linked = 0;
-    for (std::size_t row = 300; row < map.size(); ++row) {
-      const std::uint64_t first = map.first_visit(row);
+    for (std::size_t row = 300; row < robot.map.size(); ++row) {
+      const std::uint64_t first = robot.map.first_visit(row);
       if (first == row) continue;
       ++linked;
       EXPECT_NEAR(static_cast<double>(first), static_cast<double>(row) - 200.0, 10.0) << row;
@@ -371,9 +375,8 @@ TEST(PlaceBelief, LinksAVisitThatIsNotSureEnoughToBeAccepted) {
 
 /// Section 6.6, number by number.
 TEST(PlaceBelief, AsksMuchOfAFirstLoopAndALittleOfOthers) {
-  const MatcherConfig config = settings(Use::close_loops);
-  PlaceMap map(config, {1200, size});
-  Detector detector(config, map);
+  Robot robot;
+  Detector& detector = robot.detector;
   const oracle::Vectors same = way(1, 400, 0.5F, 2);
   take(detector, way(1, 400, 0.5F, 1));
   ASSERT_TRUE(detector.evidence());
@@ -387,7 +390,7 @@ TEST(PlaceBelief, AsksMuchOfAFirstLoopAndALittleOfOthers) {
   take(detector, way(2, 250, 0.5F, 1));
   EXPECT_EQ(detector.evidence()->asked, 0.7) << "however long ago that was";
   // The frames after a gap may be anywhere.
-  detector.skip(config.sequence_length + 1);
+  detector.skip(robot.config.sequence_length + 1);
   take(detector, rest.first(5));
   EXPECT_EQ(detector.evidence()->asked, 2.0);
 }
