@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Maps that last, through the real binary.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <sstream>
 
 #include "core/oracle.hpp"
+#include "core/ways.hpp"
 #include "platform/pictures.hpp"
 #include "program/program.hpp"
 #include "seqloop/files/npy_file.hpp"
@@ -140,6 +142,27 @@ TEST_F(LastingMaps, OfSessionsThatWereSeenOftenEnoughVisitsStay) {
   expect_done("map import folder --out again.seqloop");
   const auto again = nlohmann::json::parse(run("map info again.seqloop --json").out);
   EXPECT_EQ(again["sessions"], sessions);
+}
+
+/// A revisit of 40 frames that see little is likely, but may as well be a place that looks alike.
+TEST_F(LastingMaps, NothingIsLinkedOfADriveOfWhichNoLoopIsAccepted) {
+  const oracle::Vectors way = test::way(3, 300, 4.0F, 1);
+  const oracle::Vectors again = test::way(3, 300, 4.0F, 2);
+  for (const std::ptrdiff_t frames : {40, 150}) {
+    SCOPED_TRACE(frames);
+    oracle::Vectors drive = way;
+    drive.insert(drive.end(), again.begin() + 100, again.begin() + 100 + frames);
+    write("drive.npy", drive);
+    const std::string map = std::to_string(frames);
+    expect_done("run --source drive.npy --standardise off --out l.jsonl --map " + map);
+    const std::string told = test::read_all(file("l.jsonl"));
+    const bool accepted = told.find(R"("status":"match")") != std::string::npos;
+    expect_done("map export " + map + " --out of-" + map);
+    const std::string links = test::read_all(file("of-" + map + "/links.csv"));
+    const auto visits = std::ranges::count(links, '\n') - 1;
+    EXPECT_EQ(accepted, frames == 150);
+    EXPECT_EQ(visits, frames == 150 ? 150 : 0);
+  }
 }
 
 TEST_F(LastingMaps, ADriveOfManyLapsShrinks) {

@@ -35,7 +35,8 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
       learnt_(std::move(learnt)),
       settled_after_(config.patience + (has_keyframes(config) ? Keyframes::most_apart : 1) *
                                            (PlaceMap::most_between + config.sequence_length)),
-      next_number_(map.order().next_number()),
+      first_number_(map.order().next_number()),
+      next_number_(first_number_),
       came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
             MatcherConfig::most_frames_at_once + 2),
       source_frames_(map.capacity()),
@@ -145,10 +146,7 @@ void MapWriter::settle(std::uint64_t end) noexcept {
     constexpr double enough_for_later = 0.5;
     const bool likely = frame.probability >= PlaceMap::likely;
     if (likely) last_probability_ = frame.probability;
-    // What the map took for a visit by its frames alone may but look alike, as long as the drive
-    // came back to no place for sure.
-    const bool linked = likely || comes_back_;
-    std::uint64_t first = linked ? map_->first_visit(*row) : added.record.number;
+    std::uint64_t first = map_->first_visit(*row);
     double probability =
         likely ? frame.probability : std::max(frame.probability, last_probability_);
     if (first == added.record.number) {
@@ -157,6 +155,8 @@ void MapWriter::settle(std::uint64_t end) noexcept {
       first = map_->first_visit(*other);
       probability = frame.probability;
     }
+    // What looks alike in one drive is no visit, as long as it came back to no place for sure.
+    if (first >= first_number_ && !comes_back_) continue;
     linked_[added.slot] = first;
     links_[static_cast<std::size_t>(links++ % links_.size())] = {
         0, added.record.frame, added.record.number, first, probability};

@@ -121,6 +121,7 @@ class MapWriter {
   const PlaceMap* map_;
   StatisticsReader learnt_;
   std::uint64_t settled_after_;  // frames after which a place is linked to no other any more
+  std::uint64_t first_number_;   // of this drive's places
 
   // Of the loop.
   std::uint64_t next_number_;                 // of the place that is noted next
