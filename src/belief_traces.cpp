@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "seqloop/detail/kept_row.hpp"
+
 namespace seqloop {
 
 BeliefTraces::BeliefTraces(Arena& arena, std::size_t depth, std::size_t width)
@@ -26,6 +28,7 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
   auto at = static_cast<Index>(index);
   while (back < held && at != none) {
     const Traced& step = steps_[frame * width_ + at];
+    if (step.row == gone<std::uint32_t>) break;
     out[back++] = {step.row, static_cast<double>(step.gain), static_cast<double>(novelties_[frame]),
                    static_cast<double>(changes_[frame])};
     at = parents_[frame * width_ + at];
@@ -35,15 +38,11 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
 }
 
 void BeliefTraces::removed(std::size_t row) noexcept {
-  for (Traced& at : steps_) {
-    if (at.row > row) --at.row;
-  }
+  for (Traced& at : steps_) count_without(row, at.row);
 }
 
 void BeliefTraces::inserted(std::size_t row) noexcept {
-  for (Traced& at : steps_) {
-    if (at.row >= row) ++at.row;
-  }
+  for (Traced& at : steps_) count_with(row, at.row);
 }
 
 }  // namespace seqloop

@@ -378,8 +378,9 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
 
 void Detector::skip(std::uint64_t frames) noexcept {
   if (frames == 0 || queries_.frames() == 0) return;
-  skipped_ += frames;
-  if (skipped_ > config_.sequence_length) {
+  const std::uint64_t most = config_.sequence_length + 1;
+  skipped_ = std::min(most, skipped_ + std::min(most, frames));
+  if (skipped_ == most) {
     restart();
     return;
   }
@@ -468,6 +469,8 @@ bool Detector::become_place() noexcept {
   }
   const PlaceMap::Taken taken =
       map_->take(queries_.rows(), queries_.row_of(queries_.newest()), frame, keep);
+  // A frame that finds no room has a number all the same.
+  if (!taken.slot) map_->count_from(map_->order().next_number() + 1);
   // Several frames may come before who needs the newest places hears of them.
   if (taken.slot && keep_) ++*keep_;
   if (taken.removed) {

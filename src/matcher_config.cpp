@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "seqloop/detail/integer_kernels.hpp"
+#include "seqloop/detail/scene.hpp"
 #include "seqloop/detail/trajectories.hpp"
 
 namespace seqloop {
@@ -111,8 +112,11 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "initial_k", config.initial_k, 1, 1'000);
   check_range(faults, "num", config.num, 1, many);
   check_range(faults, "reinit", config.reinit, 1, many);
-  if (scans(config))
-    check_range(faults, "relocalising.rows_scanned", config.relocalising.rows_scanned, 2, many);
+  if (scans(config)) {
+    const bool believes = config.decision == Decision::probability;
+    check_range(faults, "relocalising.rows_scanned", config.relocalising.rows_scanned,
+                believes ? SceneGauge::least_rows : 2, many);
+  }
   if (relocalises(config)) {
     const std::size_t least = velocities_fit ? distances_of_one_range(config) : 0;
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "seqloop/detail/calibration.hpp"
+#include "seqloop/detail/kept_row.hpp"
 #include "seqloop/detail/portable_math.hpp"
 
 namespace seqloop {
@@ -15,7 +16,7 @@ namespace {
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr float undefined_float = std::numeric_limits<float>::quiet_NaN();
 
-constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t none = gone<std::size_t>;
 
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
@@ -434,23 +435,21 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
 
 void PendingAnswers::removed(std::size_t row) noexcept {
   for (Waiting& waiting : waiting_) {
-    if (waiting.row > row) --waiting.row;
-    if (waiting.likeliest != none && waiting.likeliest > row) --waiting.likeliest;
+    count_without(row, waiting.row);
+    count_without(row, waiting.likeliest);
+    // Where the robot was can be named no more.
+    waiting.believed = waiting.believed && waiting.row != none;
   }
-  for (FoundLine& line : lines_) {
-    if (line.row > row) --line.row;
-  }
+  for (FoundLine& line : lines_) count_without(row, line.row);
 }
 
 void PendingAnswers::inserted(std::size_t row) noexcept {
   jump_rate_.inserted(row);
   for (Waiting& waiting : waiting_) {
-    if (waiting.row >= row) ++waiting.row;
-    if (waiting.likeliest != none && waiting.likeliest >= row) ++waiting.likeliest;
+    count_with(row, waiting.row);
+    count_with(row, waiting.likeliest);
   }
-  for (FoundLine& line : lines_) {
-    if (line.row >= row) ++line.row;
-  }
+  for (FoundLine& line : lines_) count_with(row, line.row);
 }
 
 }  // namespace seqloop

@@ -184,21 +184,23 @@ void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps
     double mass = 0.0;
     bool reached = false;
     for (std::size_t by = 0; by < next.size(); ++by) {
-      if (next[by] == count_ || rows_[next[by]].row + by != row) continue;
-      const std::size_t from = next[by]++;
-      const double part = moves[from][by] * rows_[from].mass;
-      if (row >= order.size() || order.apart(rows_[from].row, row) != by) {
-        ended_.mass += part;
-        if (part > ended_.most && rows_[from].row < order.size())
-          ended_ = {ended_.mass, part, from};
-        continue;
+      // Two are of one row where a row between them has gone from the map.
+      for (; next[by] < count_ && rows_[next[by]].row + by == row; ++next[by]) {
+        const std::size_t from = next[by];
+        const double part = moves[from][by] * rows_[from].mass;
+        if (row >= order.size() || order.apart(rows_[from].row, row) != by) {
+          ended_.mass += part;
+          if (part > ended_.most && rows_[from].row < order.size())
+            ended_ = {ended_.mass, part, from};
+          continue;
+        }
+        reached = true;
+        if (part > best) {
+          best = part;
+          likeliest = from;
+        }
+        mass += part;
       }
-      reached = true;
-      if (part > best) {
-        best = part;
-        likeliest = from;
-      }
-      mass += part;
     }
     if (!reached || mass < least) continue;
     moved_[moved_count_++] = {
@@ -483,6 +485,7 @@ void PlaceBelief::removed(std::size_t row) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
     if (at.row > row) --at.row;
   }
+  if (likeliest_ && likeliest_->row > row) --likeliest_->row;
   if (expected_ && *expected_ > row) --*expected_;
   traces_.removed(row);
   wrong_.removed(row);
@@ -492,6 +495,7 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
     if (at.row >= row) ++at.row;
   }
+  if (likeliest_ && likeliest_->row >= row) ++likeliest_->row;
   if (expected_ && *expected_ >= row) ++*expected_;
   traces_.inserted(row);
   wrong_.inserted(row);

@@ -146,7 +146,7 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
   order_.insert(session, place.frame, place.number);
   if (!first_visits_.empty()) first_visits_[slot] = place.number;
   if (!stood_.empty()) stood_[slot] = 0;
-  if (last_linked_ >= last && last + 1 < size()) ++last_linked_;
+  if (last_linked_ >= last && last + 1 < size()) ++*last_linked_;
   space(last);
   return last;
 }
@@ -180,7 +180,7 @@ void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
     return first_visits_[order_.slot(r)];
   };
   first_visit(row) = first_visit(earlier);
-  const std::size_t from = std::exchange(last_linked_, row);
+  const std::size_t from = std::exchange(last_linked_, row).value_or(row);
   if (from >= row || order_.apart(from, row) > most_between) return;
   const std::optional<std::size_t> first = order_.row_of_number(first_visit(from));
   const std::optional<std::size_t> last = order_.row_of_number(first_visit(row));
@@ -211,7 +211,11 @@ PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
     taken.removed = row_to_go(keep);
     if (!taken.removed) return taken;
     order_.remove(*taken.removed);
-    if (last_linked_ > *taken.removed) --last_linked_;
+    if (last_linked_ == taken.removed) {
+      last_linked_.reset();
+    } else if (last_linked_ > taken.removed) {
+      --*last_linked_;
+    }
     // The row behind the gap has another one before it now.
     if (*taken.removed < size()) space(*taken.removed);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,7 +46,7 @@ class Detector {
     return total_bytes(plan(config, capacity));
   }
 
-  /// The most that one step can cost.
+  /// The most that one step can cost, but for what `take_in` leaves to it.
   [[nodiscard]] static Work most_work(const MatcherConfig& config, const Capacity& capacity);
 
   /// @param map lives longer than the detector. To localise: filled (and standardised, where the
@@ -96,15 +97,16 @@ class Detector {
   /// Takes in a place that another robot has saved meanwhile, between two steps.
   /// @param session of the map; not the one that this detector adds to
   /// @return as `PlaceMap::add_saved_to`
-  /// Work: as that, and what is remembered of rows. Allocates: never.
+  /// Work: as that, and what is remembered of rows; where all rows are candidates, the next step
+  /// computes ds + 1 distances more. Allocates: never.
   bool take_in(std::size_t session, const PlaceMap::Saved& place) noexcept;
 
   /// Answers that are not given yet are accepted from this probability on, where the decision is by
   /// probability. @param min_probability above 0 .. 1. Allocates: never.
   void accept_from(float min_probability) noexcept { pending_.accept_from(min_probability); }
 
-  /// The recording is over: answers every frame that still waits. A live loop calls it when it
-  /// ends; a step after it begins anew, as after many frames that never came.
+  /// The recording is over: answers every frame that still waits; by uniqueness none does. A live
+  /// loop calls it when it ends; a step after it begins anew, as after many frames that never came.
   /// @return in order of frame; valid until the next step. Work: none to speak of.
   /// Allocates: never.
   [[nodiscard]] std::span<const Answer> finish() noexcept;
@@ -116,7 +118,7 @@ class Detector {
   /// From now on a full map may forget places, but none of the newest `places`, and none that come
   /// before this is called again: they are still needed elsewhere, or are to be saved first. As
   /// long as it is not called, any may go.
-  void keep_newest(std::size_t places) noexcept { keep_ = places; }
+  void keep_newest(std::size_t places) noexcept { keep_ = std::min(places, map_->capacity()); }
 
   /// What is believed at the newest frame, and what for: where the decision is by probability.
   [[nodiscard]] const std::optional<Evidence>& evidence() const noexcept {

@@ -31,7 +31,8 @@ inline constexpr std::size_t gates = 9;
 /// The best row of the map for a frame.
 struct Match {
   /// The place at the centre column, by its number: places are counted from 0 as they are added,
-  /// with those that a full map forgets, and the frames between them that were no keyframes.
+  /// with those that a full map forgets, and the frames between them that were no keyframes or
+  /// found no room.
   std::uint64_t place = 0;
   float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
   /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
@@ -62,7 +63,8 @@ struct Work {
   bool operator==(const Work&) const = default;
 };
 
-/// What is said of one frame in the end: there is one for each frame.
+/// What is said of one frame in the end: there is one for each frame that was stepped; by
+/// uniqueness none for the first ds/2 of a window that begins anew, and the last ds - ds/2.
 struct Answer {
   std::uint64_t frame = 0;  ///< counted from 0
   Gate gate = Gate::frame_error;

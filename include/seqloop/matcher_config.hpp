@@ -57,7 +57,7 @@ struct Relocalising {
   /// Off: full searches, as published. On: no frame costs more than any other.
   bool on = true;
   /// Rows of the map that a frame scans by their sketches; the next frame goes on where it ended;
-  /// >= 2.
+  /// >= 2; by probability >= 20, from which the scene is known.
   std::size_t rows_scanned = 4096;
   /// The most descriptor distances that the candidates of a frame may cost; 0: `distances_a_frame`
   /// chooses; otherwise at least what keeping up with one range takes.
@@ -136,7 +136,8 @@ struct MatcherConfig {
 struct Capacity {
   std::size_t places = 0;           ///< rows of the map; 1 .. 2^32
   std::size_t descriptor_size = 0;  ///< values in a descriptor, D; 1 .. 2^22
-  std::size_t sessions = 1;         ///< of the map, the running one too; 1 .. 2^32
+  /// Of the map, the running one too; 1 .. 2^32. One whose places have all gone counts as well.
+  std::size_t sessions = 1;
 };
 
 /// Whether a frame has candidate ranges and a part of the map to scan, and never all rows.

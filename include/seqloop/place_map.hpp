@@ -219,8 +219,8 @@ class PlaceMap {
   std::size_t hand_ = 0;                  // thinning goes round the rows from here
   // [capacity] by slot, for thinning: difference to the row before, infinite to another session's
   std::span<float> spacing_;
-  std::span<std::uint64_t> first_visits_;  // [capacity] by slot
-  std::size_t last_linked_ = 0;            // row
+  std::span<std::uint64_t> first_visits_;   // [capacity] by slot
+  std::optional<std::size_t> last_linked_;  // row
   std::span<std::uint32_t> stood_;  // [capacity] by slot: frames behind it that are no places
 };
 

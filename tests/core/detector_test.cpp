@@ -130,12 +130,14 @@ TEST(Detector, AGapLongerThanTheWindowBeginsItAnew) {
     for (std::size_t frame = 0; frame < 60; ++frame) {
       static_cast<void>(interrupted.step(reference[frame]));
     }
-    interrupted.skip(1000);
+    interrupted.skip(1);
+    interrupted.skip(std::numeric_limits<std::uint64_t>::max());
+    interrupted.skip(1);
     Detector fresh(config, map);
     for (std::size_t frame = 150; frame < 180; ++frame) {
       FrameReport expected = fresh.step(reference[frame]);
-      expected.newest += 60;
-      if (expected.frame) *expected.frame += 60;
+      expected.newest += 61;
+      if (expected.frame) *expected.frame += 61;
       const FrameReport report = interrupted.step(reference[frame]);
       expect_same_answer(report, expected);
       EXPECT_EQ(report.gate == Gate::warming_up, frame < 160);
@@ -485,6 +487,16 @@ TEST(Detector, ListsEveryFaultOfItsSetUp) {
     EXPECT_EQ(names, (std::vector<std::string>{"sequence_length", "vmin", "k", "num",
                                                "max_uniqueness", "map"}));
   }
+}
+
+TEST(Detector, RefusesToBelieveByFewerRowsThanShowTheScene) {
+  MatcherConfig config;
+  PlaceMap map({}, {50, 3});
+  EXPECT_TRUE(map.add(std::vector<float>{1.0F, 0.0F, 0.0F}));
+  config.relocalising.rows_scanned = 19;
+  EXPECT_THROW(Detector(config, map), SetupError);
+  config.relocalising.rows_scanned = 20;
+  EXPECT_NO_THROW(Detector(config, map));
 }
 
 TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {

@@ -2,12 +2,14 @@
 // What becomes of places when the map is full, and what is answered from then on.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 #include <span>
 
 #include "core/matcher.hpp"
 #include "core/shown_drive.hpp"
+#include "core/ways.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -248,11 +250,71 @@ TEST(FullMap, WhatIsNeededElsewhereStaysHoweverManyFramesComeAtOnce) {
   EXPECT_TRUE(reports.back().map_full) << "rather no place than one that nobody has saved";
   detector.skip(5);
   EXPECT_EQ(first_place(), oldest_needed) << "nor for frames that never came";
-  EXPECT_EQ(map.order().next_number(), oldest_needed + capacity);
+  EXPECT_EQ(map.order().number(map.size() - 1), oldest_needed + capacity - 1);
+  EXPECT_EQ(map.order().next_number(), frame + 5) << "frames without a place have a number, too";
 
   detector.keep_newest(needed);
   take(frame);
   EXPECT_EQ(first_place(), oldest_needed + at_once) << "now they may go";
+}
+
+// A frame waits for its answer while the place that it was at is forgotten.
+TEST(FullMap, APlaceThatIsForgottenBeforeItsAnswerIsNotNamed) {
+  constexpr std::size_t lap = 200;
+  for (const std::size_t more : {3U, 12U, 25U, 140U}) {
+    SCOPED_TRACE(more);
+    MatcherConfig config;
+    config.use = Use::close_loops;
+    config.full_map = FullMap::forget_oldest;
+    PlaceMap map(config, {lap + more, 64});
+    Detector detector(config, map);
+    std::size_t accepted = 0;
+    for (const auto& seen : laps(5, lap)) {
+      const FrameReport report = detector.step(seen);
+      for (const Answer& answer : report.answers) {
+        if (answer.gate != Gate::match) continue;
+        ++accepted;
+        EXPECT_GE(answer.match->place, map.order().number(0));
+        EXPECT_NEAR(static_cast<double>(answer.match->place),
+                    static_cast<double>(answer.frame - lap), 2.0);
+      }
+    }
+    std::printf("%zu places more than a lap has: %zu accepted\n", more, accepted);
+    EXPECT_EQ(accepted > 0, more > 20);
+  }
+}
+
+// Where a row goes that lies between two that are believed in, these are one from then on, and do
+// not share what is believed: then 88 would be accepted.
+TEST(FullMap, AThinnedMapGoesOnFindingTheRobot) {
+  constexpr std::size_t lap = 150;
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.full_map = FullMap::thin;
+  PlaceMap map(config, {135, 256});
+  Detector detector(config, map);
+  std::size_t accepted = 0;
+  for (std::uint32_t visit = 1; visit <= 6; ++visit) {
+    for (const auto& seen : test::way(3, lap, 0.5F, visit)) {
+      const FrameReport report = detector.step(seen);
+      for (const Answer& answer : report.answers) accepted += answer.gate == Gate::match ? 1U : 0U;
+    }
+  }
+  std::printf("%zu accepted\n", accepted);
+  EXPECT_GT(accepted, 110U);
+}
+
+TEST(FullMap, AllPlacesMayBeNeeded) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.full_map = FullMap::forget_oldest;
+  PlaceMap map(config, {200, 64});
+  Detector detector(config, map);
+  detector.keep_newest(std::numeric_limits<std::size_t>::max());
+  bool full = false;
+  for (const auto& seen : laps(2, 150)) full = detector.step(seen).map_full;
+  EXPECT_TRUE(full);
+  EXPECT_EQ(map.order().number(0), 0U);
 }
 
 // Places that are no candidates yet do not go.

@@ -25,6 +25,18 @@ TEST(PlaceMap, SaysWhenItIsFullAndStaysAsItWas) {
   EXPECT_EQ(kept[15], 0.0F);
 }
 
+TEST(PlaceMap, TheFirstLinkSaysNothingOfTheRowsBeforeIt) {
+  MatcherConfig config;
+  config.standardisation.on = false;
+  PlaceMap map(config, {50, 4});
+  for (int place = 0; place < 50; ++place) EXPECT_TRUE(map.add(std::vector<float>(4, 0.5F)));
+  map.link(30, 5);
+  map.link(40, 15);
+  EXPECT_EQ(map.first_visit(29), 29U);
+  EXPECT_EQ(map.first_visit(30), 5U);
+  EXPECT_EQ(map.first_visit(35), 10U) << "between two links";
+}
+
 TEST(PlaceMap, TakesOnlyWhatFits) {
   PlaceMap map({}, {3, 2});
   EXPECT_FALSE(map.learn(std::vector<float>(4000, 1.0F)));

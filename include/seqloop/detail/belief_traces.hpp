@@ -46,7 +46,8 @@ class BeliefTraces {
   /// @param out written, as many as there are at most. @return how many. Work: as many.
   std::size_t trace(std::size_t index, std::span<Step> out) const noexcept;
 
-  /// A row went from the map: those behind it are counted one lower.
+  /// A row went from the map: those behind it are counted one lower. A trace ends where it came
+  /// from a place that has been forgotten.
   void removed(std::size_t row) noexcept;
 
   /// A row came into the map: those from it on are counted one higher.

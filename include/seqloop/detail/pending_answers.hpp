@@ -102,7 +102,8 @@ class PendingAnswers {
   /// The answers so far have been handed over.
   void clear() noexcept { given_ = 0; }
 
-  /// A row went from the map: those behind it are counted one lower.
+  /// A row went from the map: those behind it are counted one lower. A frame that waits, and was at
+  /// a place that is forgotten, is answered as if nothing were known of it.
   void removed(std::size_t row) noexcept;
 
   /// A row came into the map: those from it on are counted one higher.

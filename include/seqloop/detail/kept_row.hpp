@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+namespace seqloop {
+
+/// What is kept of a row that has gone from the map: none.
+template <class Row>
+inline constexpr Row gone = std::numeric_limits<Row>::max();
+
+/// A row went from the map: what is kept of those behind it is counted one lower. The map's first
+/// row was forgotten, and is gone. Any other was thinned out: the next one shows much the same.
+template <class Row>
+void count_without(std::size_t row, Row& kept) noexcept {
+  if (kept == gone<Row>) return;
+  if (kept > row) {
+    --kept;
+  } else if (kept == row && row == 0) {
+    kept = gone<Row>;
+  }
+}
+
+/// A row came into the map: those from it on are counted one higher.
+template <class Row>
+void count_with(std::size_t row, Row& kept) noexcept {
+  if (kept >= row && kept != gone<Row>) ++kept;
+}
+
+}  // namespace seqloop
