@@ -196,6 +196,55 @@ TEST(JpegFiles, WhatIsHarmlessIsNoDamage) {
   expect_as_opencv(test::with_odd_header(jpeg), "with a header that is odd");
 }
 
+/// A progressive picture of one grey block: a scan of its brightness, then again and again one of
+/// all else, which is nothing.
+Bytes with_scans(int scans) {
+  Bytes jpeg;
+  const auto add = [&jpeg](std::initializer_list<std::uint8_t> bytes, int more = 0,
+                           std::uint8_t what = 0) {
+    for (const std::uint8_t byte : bytes) jpeg.push_back(byte);
+    for (int i = 0; i < more; ++i) jpeg.push_back(what);
+  };
+  add({0xff, 0xd8, 0xff, 0xdb, 0, 67, 0}, 64, 1);
+  add({0xff, 0xc2, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0});
+  add({0xff, 0xc4, 0, 20, 0x00, 1}, 16);  // one code: no bits follow
+  add({0xff, 0xc4, 0, 20, 0x10, 1}, 16);
+  add({0xff, 0xda, 0, 8, 1, 1, 0, 0, 0, 0, 0x7f});
+  for (int i = 1; i < scans; ++i) add({0xff, 0xda, 0, 8, 1, 1, 0, 1, 63, 0, 0x7f});
+  add({0xff, 0xd9});
+  return jpeg;
+}
+
+TEST(JpegFiles, MoreScansThanAnyEncoderWritesAreRefused) {
+  expect_as_opencv(with_scans(64), "64 scans");
+  const std::string fault =
+      "a.jpg: the JPEG picture has more than 64 scans, which take too long to decode; encode it "
+      "anew";
+  EXPECT_EQ(fault_of(with_scans(65)), fault);
+  Bytes hidden = with_scans(65);
+  hidden.insert(hidden.begin() + static_cast<std::ptrdiff_t>(test::segment(hidden, 0xc2)), 0);
+  EXPECT_EQ(fault_of(hidden), fault) << "libjpeg skips bytes between segments";
+  // Neither in a segment nor behind the end is it a scan.
+  Bytes others = with_scans(64);
+  others.insert(others.end(), {0xff, 0xda, 0, 8, 0xff, 0xd9});
+  others.insert(others.begin() + 2, {0xff, 0xfe, 0, 4, 0xff, 0xda});
+  EXPECT_EQ(fault_of(others), "");
+  // With OpenCV's decoder, too.
+  const TemporaryFolder folder;
+  folder.write("a.jpg", text(with_scans(65)));
+  ImageFolderSource plain(folder.path(), false);
+  Frame frame;
+  EXPECT_EQ(plain.grab(frame), Grab::unreadable);
+  EXPECT_EQ(frame.fault, fault);
+}
+
+TEST(JpegFiles, TheDecoderAloneBoundsScansToo) {
+  turbojpeg::JpegFileDecoder decoder(false);
+  Image image;
+  const Bytes jpeg = with_scans(600);
+  EXPECT_TRUE(says(std::string(decoder.decode({.bytes = jpeg}, image)), "more than 500 scans"));
+}
+
 TEST(JpegFiles, MutatedOnesAreReadOrRefused) {
   constexpr unsigned seed = 4;
   SCOPED_TRACE(seed);

@@ -18,6 +18,12 @@ constexpr std::uint64_t most_pixels = 200'000'000;  // largest camera sensors; 0
 constexpr std::string_view truncated = "the file is truncated";
 constexpr std::string_view too_large = "the picture has more than 200 million pixels";
 
+/// Each goes over the whole picture, however few bytes it has. libjpeg writes 10, or 18 of four
+/// inks; mozjpeg chooses from 64.
+constexpr int most_scans = 64;
+constexpr std::string_view too_many_scans =
+    "the JPEG picture has more than 64 scans, which take too long to decode; encode it anew";
+
 template <std::size_t size>
 bool starts_with(Bytes bytes, const std::array<std::uint8_t, size>& start) {
   return bytes.size() >= size && std::equal(start.begin(), start.end(), bytes.begin());
@@ -99,6 +105,25 @@ void look_at_jpeg(Bytes file, PictureFile& seen) {
   seen.fault = truncated;
 }
 
+/// Goes from marker to marker as libjpeg does, over whatever does not belong there: otherwise a
+/// byte too many would hide scans.
+bool has_too_many_scans(Bytes jpeg) {
+  int scans = 0;
+  std::size_t place = 0;
+  while (true) {
+    const Bytes rest = jpeg.subspan(std::min(place, jpeg.size()));
+    const auto fill = std::ranges::find(rest, std::uint8_t{0xff});
+    if (rest.end() - fill < 2) return false;
+    const std::uint8_t marker = fill[1];
+    place = jpeg.size() - static_cast<std::size_t>(rest.end() - fill) + (marker == 0xff ? 1 : 2);
+    if (marker == 0xd9) return false;  // the picture's end; what follows is the camera's own
+    if (marker == 0xda && ++scans > most_scans) return true;
+    const bool has_length = marker >= 0xc0 && marker != 0xff && (marker < 0xd0 || marker > 0xd8);
+    if (has_length)
+      place += static_cast<std::size_t>(std::max<std::uint64_t>(2, big_endian(jpeg, place, 2)));
+  }
+}
+
 void look_at_png(Bytes file, PictureFile& seen) {
   constexpr std::size_t header_place = png_start.size();  // IHDR: length, type, width, height
   seen.width = big_endian(file, header_place + 8, 4);
@@ -116,7 +141,10 @@ void look_at_png(Bytes file, PictureFile& seen) {
 PictureFile look_at(Bytes file) noexcept {
   PictureFile seen;
   if (file.empty()) seen.fault = "the file is empty";
-  if (starts_with(file, jpeg_start)) look_at_jpeg(file, seen);
+  if (starts_with(file, jpeg_start)) {
+    look_at_jpeg(file, seen);
+    if (has_too_many_scans(file)) seen.fault = too_many_scans;
+  }
   if (starts_with(file, png_start)) look_at_png(file, seen);
   if (seen.width * seen.height > most_pixels) seen.fault = too_large;
   return seen;

@@ -11,7 +11,8 @@ namespace seqloop::opencv {
 /// decoder.
 struct PictureFile {
   /// Empty, or a JPEG or PNG that was cut off (decoders make a half grey picture of those) or that
-  /// has more pixels than a camera; no text when nothing was found.
+  /// has more pixels than a camera or more scans than an encoder writes; no text when nothing was
+  /// found.
   std::string_view fault;
   std::uint64_t width = 0;   ///< pixels, before it is turned; 0: not seen
   std::uint64_t height = 0;  ///< likewise

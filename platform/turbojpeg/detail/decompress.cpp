@@ -26,9 +26,10 @@ void decode(Bytes jpeg, const Pixels& into, FixedText& why) {
   const Decompressor decompressor(tjInitDecompress(), &tjDestroy);
   if (!decompressor) return why.assign({no_memory});
   const bool gray = into.format == PixelFormat::gray8;
-  const int failed =
-      tjDecompress2(decompressor.get(), jpeg.data(), jpeg.size(), into.data, into.width,
-                    into.width * (gray ? 1 : 3), into.height, gray ? TJPF_GRAY : TJPF_BGR, 0);
+  // A few bytes more would otherwise be a whole pass over the picture more.
+  const int failed = tjDecompress2(decompressor.get(), jpeg.data(), jpeg.size(), into.data,
+                                   into.width, into.width * (gray ? 1 : 3), into.height,
+                                   gray ? TJPF_GRAY : TJPF_BGR, TJFLAG_LIMITSCANS);
   if (failed != 0) why.assign({tjGetErrorStr2(decompressor.get())});
 }
 
