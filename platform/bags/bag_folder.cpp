@@ -116,13 +116,14 @@ class BagFolder : public Bag {
     message = {};
     if (next_ == files_.size()) return false;
     try {
-      open_ = open_bag(files_[next_++]);
+      auto bag = open_bag(files_[next_++]);
+      bag->choose(topic_);
+      open_ = std::move(bag);
     } catch (const SetupError& error) {
       fault_ = error.what();
       message.fault = fault_;
       return false;
     }
-    open_->choose(topic_);
     return true;
   }
 

@@ -73,6 +73,22 @@ TEST(Db3Bag, AFileThatIsStillWrittenIsNotTouched) {
   EXPECT_EQ(test::read_all(folder.path() / "b.db3-wal"), "something");
 }
 
+TEST(Db3Bag, AFileOfAFolderThatIsNoneSaysWhyInItsTurn) {
+  const test::TemporaryFolder folder;
+  test::write_db3(folder.path() / "b_0.db3", 4, {{"/camera", "sensor_msgs/msg/Image"}},
+                  {{1, 100, {0}}});
+  test::run_sql(folder.path() / "b_1.db3",
+                "CREATE TABLE topics(id, name, type); CREATE TABLE messages(topic_id, timestamp)");
+  const auto bag = open_bag(folder.path());
+  bag->choose("/camera");
+  Message message;
+  EXPECT_EQ(bag->next(message), Read::message);
+  EXPECT_EQ(bag->next(message), Read::damaged);
+  EXPECT_TRUE(test::says(std::string(message.fault), "b_1.db3: is not a bag of rosbag2"));
+  EXPECT_TRUE(test::says(std::string(message.fault), "no such column: m.data"));
+  EXPECT_EQ(bag->next(message), Read::end);
+}
+
 TEST(Db3Bag, CutOffEndsWithADamage) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "b.db3";
