@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -70,7 +71,16 @@ class Contents {
     return ids;
   }
 
-  [[nodiscard]] bool empty() const noexcept { return channels_.empty(); }
+  /// A summary need neither repeat schemas and channels nor count each channel's messages.
+  [[nodiscard]] bool whole(const mcap::Statistics& statistics) const {
+    std::uint64_t counted = 0;
+    for (const auto& [id, messages] : messages_) counted += messages;
+    const bool typed = std::ranges::all_of(channels_, [&](const auto& channel) {
+      return channel.second.schema == 0 || schemas_.contains(channel.second.schema);
+    });
+    return typed && !channels_.empty() && channels_.size() >= statistics.channels &&
+           schemas_.size() >= statistics.schemas && counted >= statistics.all_messages;
+  }
 
  private:
   std::map<std::uint16_t, std::string> schemas_;
@@ -280,7 +290,7 @@ class McapBag : public Bag {
   bool take_summary(Bytes summary) {
     Contents contents;
     std::vector<mcap::ChunkIndex> chunks;
-    bool counted = false;
+    std::optional<mcap::Statistics> statistics;
     while (const auto record = mcap::take_record(summary)) {
       contents.add(*record);
       if (record->opcode == Opcode::chunk_index) {
@@ -288,24 +298,23 @@ class McapBag : public Bag {
         if (!chunk) return false;
         chunks.push_back(std::move(*chunk));
       } else if (record->opcode == Opcode::statistics) {
-        const auto statistics = mcap::read_statistics(record->content);
+        statistics = mcap::read_statistics(record->content);
         if (!statistics) return false;
-        counted = true;
         facts_.start_ns = nanoseconds(statistics->start);
         facts_.end_ns = nanoseconds(statistics->end);
         for (const auto& [channel, messages] : statistics->messages)
           contents.count(channel, messages);
       }
     }
-    if (!counted || contents.empty()) return false;
+    if (!statistics || !contents.whole(*statistics)) return false;
     contents_ = std::move(contents);
     chunks_ = std::move(chunks);
     return true;
   }
 
-  /// Looks at everything once: what has no summary tells its topics nowhere else.
+  /// Looks at everything once: what has no full summary tells its topics nowhere else.
   void scan() {
-    notes_.emplace_back("the file has no summary: all of it was read to find its topics");
+    notes_.emplace_back("the file has no full summary: all of it was read to find its topics");
     facts_.start_ns = std::numeric_limits<std::int64_t>::max();
     facts_.end_ns = 0;
     walk_.begin({});

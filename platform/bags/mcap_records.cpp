@@ -83,7 +83,10 @@ std::optional<ChunkIndex> read_chunk_index(Bytes content) {
 std::optional<Statistics> read_statistics(Bytes content) {
   Cursor cursor(content);
   Statistics statistics;
-  static_cast<void>(cursor.take(8 + 2 + 4 * 4));  // counts of all kinds
+  statistics.all_messages = cursor.number<std::uint64_t>();
+  statistics.schemas = cursor.number<std::uint16_t>();
+  statistics.channels = cursor.number<std::uint32_t>();
+  static_cast<void>(cursor.take(3 * 4));  // counts of attachments, metadata and chunks
   statistics.start = cursor.number<std::uint64_t>();
   statistics.end = cursor.number<std::uint64_t>();
   Cursor counts(cursor.take(cursor.number<std::uint32_t>()));

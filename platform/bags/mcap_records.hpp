@@ -118,9 +118,13 @@ struct ChunkIndex {
 };
 
 struct Statistics {
+  std::uint64_t all_messages = 0;
+  std::uint16_t schemas = 0;
+  std::uint32_t channels = 0;
   std::uint64_t start = 0;  ///< log times of the first and of the last message
   std::uint64_t end = 0;
-  std::vector<std::pair<std::uint16_t, std::uint64_t>> messages;  ///< a channel and its count
+  std::vector<std::pair<std::uint16_t, std::uint64_t>>
+      messages;  ///< a channel and its count; may be left out
 };
 
 // Each is nothing where the record is not whole. Throw std::bad_alloc.

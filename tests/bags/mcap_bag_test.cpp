@@ -61,6 +61,9 @@ std::vector<int> counted(int end) {
 
 class McapCompression : public testing::TestWithParam<std::string> {};
 
+const std::string read_twice =
+    "the file has no full summary: all of it was read to find its topics";
+
 TEST_P(McapCompression, WithoutASummaryEverythingIsFound) {
   const auto bag = opened(chunked(GetParam()).finish());
   const BagFacts& facts = bag->facts();
@@ -75,8 +78,7 @@ TEST_P(McapCompression, WithoutASummaryEverythingIsFound) {
   EXPECT_EQ(read_all(*bag, "/camera"), counted(15)) << "a second time";
   EXPECT_EQ(read_all(*bag, "/talk").front(), 100);
   EXPECT_TRUE(read_all(*bag, "/gone").empty());
-  EXPECT_EQ(bag->notes(), std::vector<std::string>{
-                              "the file has no summary: all of it was read to find its topics"});
+  EXPECT_EQ(bag->notes(), std::vector<std::string>{read_twice});
 }
 
 TEST_P(McapCompression, CutOffAnywhereTheMessagesBeforeAreRead) {
@@ -158,6 +160,45 @@ TEST(McapBag, WithASummaryChunksOfOtherTopicsAreNotRead) {
   file.bytes[file.bytes.size() - 12] ^= 1U;
   const auto damaged = opened(file);
   EXPECT_EQ(damaged->notes().at(0), "the check sum of the summary is wrong: it is not used");
+}
+
+/// @param counts of channels' messages, from 1 on
+McapBytes with_statistics(McapBytes summary, std::initializer_list<std::uint64_t> counts) {
+  McapBytes statistics;
+  statistics.put(std::uint64_t{10}).put(std::uint16_t{2}).put(std::uint32_t{2});
+  statistics.put(std::uint32_t{0}).put(std::uint32_t{0}).put(std::uint32_t{0});
+  statistics.put(std::uint64_t{1000}).put(std::uint64_t{1004});
+  statistics.put(static_cast<std::uint32_t>(10 * counts.size()));
+  std::uint16_t channel = 0;
+  for (const std::uint64_t count : counts) statistics.put(++channel).put(count);
+  return summary.record(11, statistics);
+}
+
+TEST(McapBag, WhatASummaryLeavesOutIsFound) {
+  const auto bag_with = [](const McapBytes& summary) {
+    return opened(McapBytes().start().raw(records(0).bytes).finish(summary));
+  };
+  const McapBytes schemas = McapBytes().schema(7, image).schema(8, "std_msgs/msg/String");
+  const McapBytes channels = McapBytes().channel(1, 7, "/camera").channel(2, 8, "/talk");
+  const McapBytes both = McapBytes(schemas).raw(channels.bytes);
+  EXPECT_TRUE(bag_with(with_statistics(both, {5, 5}))->notes().empty());
+  for (const auto& [what, summary] : std::initializer_list<std::pair<const char*, McapBytes>>{
+           {"schemas", with_statistics(channels, {5, 5})},
+           {"one schema", with_statistics(McapBytes().schema(8, "").raw(channels.bytes), {5, 5})},
+           {"counts", with_statistics(both, {})},
+           {"one count", with_statistics(both, {5})},
+           {"channels", with_statistics(schemas, {5, 5})},
+           {"a channel", with_statistics(McapBytes(schemas).channel(2, 8, "/talk"), {5, 5})}}) {
+    SCOPED_TRACE(what);
+    const auto bag = bag_with(summary);
+    ASSERT_EQ(bag->facts().topics.size(), 2U);
+    EXPECT_EQ(bag->facts().topics[0].name, "/camera");
+    EXPECT_EQ(bag->facts().topics[0].type, image);
+    EXPECT_EQ(bag->facts().topics[0].messages, 5U);
+    EXPECT_EQ(bag->facts().topics[1].messages, 5U);
+    EXPECT_EQ(read_all(*bag, "/camera"), counted(5));
+    EXPECT_EQ(bag->notes(), std::vector<std::string>{read_twice});
+  }
 }
 
 TEST(McapBag, MessagesOutsideOfChunks) {
