@@ -16,6 +16,7 @@
 #include "sqlite/little_endian.hpp"
 #include "sqlite/raw_rows.hpp"
 #include "sqlite/schema.hpp"
+#include "sqlite/state.hpp"
 
 namespace seqloop::sqlite {
 namespace {
@@ -197,13 +198,11 @@ class WithLog {
   bool copied_ = false;
 };
 
-std::string name_of(const SessionFacts& facts, std::int64_t id) {
-  return facts.name.empty() ? "recovered " + std::to_string(id) : facts.name;
-}
-
 class Copying {
  public:
-  Copying(Remains& remains, MapFile& map) : remains_(remains), map_(map) {}
+  Copying(Remains& remains, MapFile& map) : remains_(remains), map_(map) {
+    for (const auto& [id, session] : remains.sessions) known_.push_back(session.facts);
+  }
 
   Recovered all() {
     for (auto& [id, session] : remains_.sessions) copy(id, session);
@@ -215,8 +214,16 @@ class Copying {
   }
 
  private:
+  /// A name that is made up takes none from the others; a row that was left of a session that is
+  /// gone may have its name.
+  [[nodiscard]] std::string name_of(std::int64_t id, const SessionFacts& facts) const {
+    return free_name(map_.sessions(), facts.name.empty()
+                                          ? free_name(known_, "recovered " + std::to_string(id))
+                                          : facts.name);
+  }
+
   void copy(std::int64_t id, Remains::Session& session) {
-    const std::string name = name_of(session.facts, id);
+    const std::string name = name_of(id, session.facts);
     const std::int64_t own =
         map_.begin_session(name, session.facts.began_ns, session.facts.settings);
     ++result_.sessions;
@@ -283,6 +290,7 @@ class Copying {
 
   Remains& remains_;
   MapFile& map_;
+  std::vector<SessionFacts> known_;
   Recovered result_;
 };
 

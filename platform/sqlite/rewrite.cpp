@@ -69,7 +69,8 @@ void lead_on(State& map, std::span<const Successor> successors) {
   }
 }
 
-/// @return the name, with a number behind it where it is taken
+}  // namespace
+
 std::string free_name(const std::vector<SessionFacts>& taken, const std::string& name) {
   std::string free = name;
   for (int number = 2; std::ranges::find(taken, free, &SessionFacts::name) != taken.end();) {
@@ -77,8 +78,6 @@ std::string free_name(const std::vector<SessionFacts>& taken, const std::string&
   }
   return free;
 }
-
-}  // namespace
 
 void MapFile::forget(const std::string& session) {
   State& map = *state_;

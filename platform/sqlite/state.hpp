@@ -18,6 +18,10 @@ namespace seqloop::sqlite {
 using TakeBlock = std::function<void(const PlaceBlock&)>;
 using Tell = std::function<void(const std::string&)>;
 
+/// @return the name, with a number behind it where it is taken
+[[nodiscard]] std::string free_name(const std::vector<SessionFacts>& taken,
+                                    const std::string& name);
+
 /// What an open map is made of. The lock goes last.
 struct MapFile::State {
   State(std::filesystem::path file, Holder lock, int flags, const char* vfs = nullptr)

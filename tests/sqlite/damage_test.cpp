@@ -13,6 +13,7 @@
 #include "seqloop/sqlite/recover.hpp"
 #include "sqlite/recording_vfs.hpp"
 #include "sqlite/sample_map.hpp"
+#include "sqlite/schema.hpp"
 #include "temporary_folder.hpp"
 
 namespace seqloop {
@@ -261,6 +262,53 @@ TEST(MapRecovery, NeedsAMap) {
   });
   EXPECT_TRUE(test::says(refused, "nothing of a map is whole in it"));
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+void change(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+}
+
+/// A map of sessions with five places each. @return what the map knows of the last
+sqlite::SessionFacts make(const fs::path& file, std::initializer_list<const char*> names) {
+  MapFile map = MapFile::open(file, test::sample_form());
+  for (const char* name : names) test::save_sample(map, map.begin_session(name, 0, ""), 0, 5);
+  return map.sessions().back();
+}
+
+/// The names of sessions in what is recovered, which is all places.
+std::vector<std::string> recovered_names(const fs::path& file, const fs::path& out) {
+  static_cast<void>(sqlite::recover(file, out));
+  const MapFile map = MapFile::read_only(out);
+  std::vector<std::string> names;
+  for (const sqlite::SessionFacts& facts : map.sessions()) {
+    EXPECT_EQ(facts.places, 5U);
+    names.push_back(facts.name);
+  }
+  return names;
+}
+
+TEST(MapRecovery, MakesUpNamesThatAreFree) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path file = folder.path() / "map.seqloop";
+  make(file, {"recovered 2", "b", "c", "recovered 3"});
+  change(file, "UPDATE session SET checksum = checksum + 1 WHERE id IN (2, 3)");
+  EXPECT_EQ(
+      recovered_names(file, folder.path() / "out"),
+      (std::vector<std::string>{"recovered 2", "recovered 2 2", "recovered 3 2", "recovered 3"}));
+}
+
+TEST(MapRecovery, CopiesTwoSessionsOfOneName) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path file = folder.path() / "map.seqloop";
+  sqlite::SessionFacts facts = make(file, {"a", "b"});
+  facts.name = "a";
+  change(file, "UPDATE session SET name = 'a', checksum = " +
+                   std::to_string(sqlite::session_sum(facts, test::sample_form())) +
+                   " WHERE id = 2");
+  EXPECT_EQ(recovered_names(file, folder.path() / "out"), (std::vector<std::string>{"a", "a 2"}));
 }
 
 TEST(MapRecovery, TakesTheLogWithTheFile) {
