@@ -45,13 +45,28 @@ mkdir "$work/user"
 cat >"$work/user/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.25)
 project(user CXX)
-find_package(seqloop REQUIRED COMPONENTS core)
+find_package(seqloop REQUIRED COMPONENTS core OPTIONAL_COMPONENTS teleport)
 add_executable(user ../core.cpp)
 target_link_libraries(user PRIVATE seqloop::core)
+if(seqloop_teleport_FOUND)
+  message(FATAL_ERROR "teleport is not among what was built")
+endif()
 END
 must cmake -G Ninja -S "$work/user" -B "$work/user/build" -DCMAKE_PREFIX_PATH="$work/dev/usr"
 must cmake --build "$work/user/build"
 [ "$("$work/user/build/user")" = warming_up ]
+# Each component finds by itself what it links.
+for component in core files linux ros bags opencv turbojpeg sqlite; do
+  mkdir "$work/user-$component"
+  cat >"$work/user-$component/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.25)
+project(user CXX)
+find_package(seqloop REQUIRED COMPONENTS $component)
+add_executable(user ../core.cpp)
+target_link_libraries(user PRIVATE seqloop::$component)
+END
+  must cmake -G Ninja -S "$work/user-$component" -B "$work/user-$component/build" -DCMAKE_PREFIX_PATH="$work/dev/usr"
+done
 PKG_CONFIG_PATH=$(dirname "$(find "$work/dev" -name seqloop.pc)")
 export PKG_CONFIG_PATH
 # shellcheck disable=SC2046 # one word a flag
