@@ -80,12 +80,14 @@ Database connect(std::span<const std::uint8_t> bytes) {
 
 class Db3Bag : public Bag {
  public:
-  Db3Bag(Database database, std::string name)
-      : name_(std::move(name)), database_(std::move(database)) {
+  /// @param bytes of the file
+  Db3Bag(Database database, std::string name, std::uint64_t bytes)
+      : name_(std::move(name)), database_(std::move(database)), most_steps_(most_steps(bytes)) {
     // A file from somebody else: its own views, triggers and functions are not run.
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(most_bytes));
+    sqlite3_progress_handler(database_.get(), steps_at_once, &Db3Bag::stop_circles, this);
     read_facts();
   }
 
@@ -129,7 +131,20 @@ class Db3Bag : public Bag {
   }
 
  private:
+  static constexpr int steps_at_once = 1000;
+
+  /// Of SQLite's machine, for one statement. Of bags whose messages are empty it needs 1.1 a byte.
+  static std::uint64_t most_steps(std::uint64_t bytes) { return 10 * (bytes + 100'000); }
+
+  /// Pages that name the same pages again and again make rows without end of a few bytes.
+  static int stop_circles(void* self) {
+    auto& bag = *static_cast<Db3Bag*>(self);
+    bag.steps_ += steps_at_once;
+    return bag.steps_ > bag.most_steps_ ? 1 : 0;
+  }
+
   Statement prepare(const std::string& text) {
+    steps_ = 0;
     sqlite3_stmt* made = nullptr;
     const int code = sqlite3_prepare_v2(database_.get(), text.c_str(), -1, &made, nullptr);
     Statement statement(made);
@@ -139,6 +154,9 @@ class Db3Bag : public Bag {
 
   [[noreturn]] void refuse(int code) const {
     if (code == SQLITE_NOMEM) throw std::bad_alloc();
+    if (code == SQLITE_INTERRUPT)
+      throw SetupError(Fault{name_, "is damaged: it has more rows than there is room for in it",
+                             "copy it anew, or take what `sqlite3 FILE .recover` finds"});
     throw SetupError(Fault{name_, "is not a bag of rosbag2 (" + std::string(sqlite3_errstr(code)) +
                                       ": " + sqlite3_errmsg(database_.get()) + ")"});
   }
@@ -194,6 +212,8 @@ class Db3Bag : public Bag {
 
   std::string name_;
   Database database_;
+  std::uint64_t most_steps_;
+  std::uint64_t steps_ = 0;  ///< of the newest statement
   BagFacts facts_;
   Statement rows_;
   bool ended_ = false;
@@ -203,11 +223,13 @@ class Db3Bag : public Bag {
 }  // namespace
 
 std::unique_ptr<Bag> open_db3(const std::filesystem::path& file) {
-  return std::make_unique<Db3Bag>(connect(file), file.string());
+  Database database = connect(file);
+  return std::make_unique<Db3Bag>(std::move(database), file.string(),
+                                  std::filesystem::file_size(file));
 }
 
 std::unique_ptr<Bag> open_db3(std::span<const std::uint8_t> bytes) {
-  return std::make_unique<Db3Bag>(connect(bytes), "db3");
+  return std::make_unique<Db3Bag>(connect(bytes), "db3", bytes.size());
 }
 
 }  // namespace seqloop::bags
