@@ -102,6 +102,17 @@ bool Statement::step() {
   throw DatabaseError(extended, message);
 }
 
+bool Statement::next() {
+  if (!step()) return false;
+  const std::int64_t number = integer(0);
+  if (newest_ && number <= *newest_) {
+    sqlite3_reset(statement_);
+    throw DatabaseError(SQLITE_CORRUPT, "the same rows come again");
+  }
+  newest_ = number;
+  return true;
+}
+
 std::span<const std::byte> Statement::blob(int column) const {
   const void* data = sqlite3_column_blob(statement_, column);
   const int size = sqlite3_column_bytes(statement_, column);

@@ -74,6 +74,7 @@ class Statement {
   template <class... Values>
   Statement& with(const Values&... values) {
     sqlite3_reset(statement_);
+    newest_.reset();
     int index = 0;
     (bind(++index, values), ...);
     return *this;
@@ -81,6 +82,9 @@ class Statement {
 
   /// @return whether there is a row. Throws DatabaseError.
   bool step();
+  /// The same of rows in the order of their numbers, which are the first column. Where pages lead
+  /// in circles, rows come again without end: SQLite does not see it.
+  bool next();
   /// For what returns no rows.
   void run() {
     while (step()) {
@@ -108,6 +112,7 @@ class Statement {
 
   const Database* database_;
   sqlite3_stmt* statement_ = nullptr;
+  std::optional<std::int64_t> newest_;  ///< number that `next` came to
 };
 
 /// BEGIN IMMEDIATE … COMMIT; rolled back by its destructor without one.

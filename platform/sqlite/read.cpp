@@ -95,7 +95,7 @@ SessionFacts MapFile::State::session(std::int64_t id) const {
 std::vector<SessionFacts> MapFile::State::sessions() const {
   std::vector<SessionFacts> all;
   Statement row(database, std::string(session_columns) + "ORDER BY id");
-  while (row.step()) {
+  while (row.next()) {
     all.push_back(session_facts(row));
     if (session_sum(all.back(), form) != row.integer(11)) {
       throw SetupError(damaged(session_name(all.back().id)));
@@ -117,7 +117,7 @@ void MapFile::State::each_row(std::int64_t from, std::int64_t to, const TakeRow&
   Statement rows(database, std::string(block_columns) +
                                "FROM block WHERE first BETWEEN ? AND ? ORDER BY first");
   rows.with(from, to);
-  while (rows.step()) {
+  while (rows.next()) {
     const BlockRow row = block_row(rows);
     if (!take({row, row.whole(form)})) return;
   }
@@ -132,7 +132,7 @@ std::vector<std::int64_t> MapFile::State::removed_of(std::int64_t from, std::int
       database,
       "SELECT place, checksum FROM removed WHERE place >= ? AND place < ? ORDER BY place");
   gone.with(from, more ? next.integer(0) : any);
-  while (gone.step()) {
+  while (gone.next()) {
     if (row_checksum("removed", gone.integer(0)) == gone.integer(1)) {
       removed.push_back(gone.integer(0));
     } else {
@@ -235,7 +235,7 @@ void MapFile::read_links(const std::function<void(const SavedLink&)>& take) cons
     Statement row(state_->database,
                   "SELECT id, session, frame, place, other, probability, checksum FROM link "
                   "ORDER BY id");
-    while (row.step()) {
+    while (row.next()) {
       SavedLink link{row.integer(1), static_cast<std::uint64_t>(row.integer(2)), std::nullopt,
                      static_cast<std::uint64_t>(row.integer(4)), row.real(5)};
       if (!row.null(3)) link.place = static_cast<std::uint64_t>(row.integer(3));
@@ -253,7 +253,7 @@ void MapFile::read_thumbnails(const std::function<void(const SavedThumbnail&)>& 
   std::int64_t count = 0;
   state_->reading([&] {
     Statement row(state_->database, "SELECT place, jpeg, checksum FROM thumbnail ORDER BY place");
-    while (row.step()) {
+    while (row.next()) {
       const SavedThumbnail picture = thumbnail_of(row);
       if (!is_whole(picture, row.integer(2))) {
         throw SetupError(
@@ -310,10 +310,13 @@ std::vector<std::uint64_t> MapFile::thumbnails_around(std::uint64_t place) const
 
 ThumbnailFacts MapFile::thumbnail_facts() const {
   return state_->reading([&] {
-    Statement row(state_->database, "SELECT count(*), total(length(jpeg)) FROM thumbnail");
-    (void)row.step();
-    return ThumbnailFacts{static_cast<std::uint64_t>(row.integer(0)),
-                          static_cast<std::uint64_t>(row.real(1))};
+    ThumbnailFacts facts;
+    Statement row(state_->database, "SELECT place, length(jpeg) FROM thumbnail ORDER BY place");
+    while (row.next()) {
+      ++facts.count;
+      facts.bytes += static_cast<std::uint64_t>(row.integer(1));
+    }
+    return facts;
   });
 }
 

@@ -50,10 +50,11 @@ const Successor* successor_of(std::span<const Successor> successors, std::uint64
 /// said.
 template <class State>
 void lead_on(State& map, std::span<const Successor> successors) {
-  Statement rows(map.database,
-                 "SELECT id, session, frame, other, probability FROM link WHERE place IS NULL");
+  Statement rows(
+      map.database,
+      "SELECT id, session, frame, other, probability FROM link WHERE place IS NULL ORDER BY id");
   std::vector<std::pair<std::int64_t, SavedLink>> changed;
-  while (rows.step()) {
+  while (rows.next()) {
     SavedLink visit{rows.integer(1), static_cast<std::uint64_t>(rows.integer(2)), std::nullopt,
                     static_cast<std::uint64_t>(rows.integer(3)), rows.real(4)};
     const Successor* next = successor_of(successors, visit.other);
@@ -108,7 +109,7 @@ std::size_t MapFile::retire(const std::string& session, std::uint64_t first, std
     std::vector<std::int64_t> blocks;
     Statement rows(map.database, "SELECT first FROM block WHERE session = ? ORDER BY first");
     rows.with(facts.id);
-    while (rows.step()) blocks.push_back(rows.integer(0));
+    while (rows.next()) blocks.push_back(rows.integer(0));
     const Numbers numbers = numbers_of(map.database, facts.id, map.counts.next_place);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       const std::int64_t end = i + 1 < blocks.size() ? blocks[i + 1] - 1 : numbers.last;
@@ -202,7 +203,7 @@ void MapFile::compact() {
   map.saving([&] {
     std::vector<std::int64_t> blocks;
     Statement rows(map.database, "SELECT first FROM block ORDER BY first");
-    while (rows.step()) blocks.push_back(rows.integer(0));
+    while (rows.next()) blocks.push_back(rows.integer(0));
     std::vector<std::int64_t> replaced;
     std::vector<PlaceRecord> records;
     std::vector<std::byte> places;
@@ -230,9 +231,9 @@ void MapFile::compact() {
     write();
     map.database.execute("DELETE FROM removed");
     // A link of a place that is there stays, even to one that is gone: others may lead there, too.
-    Statement links(map.database, "SELECT id, coalesce(place, other) FROM link");
+    Statement links(map.database, "SELECT id, coalesce(place, other) FROM link ORDER BY id");
     std::vector<std::int64_t> loose;
-    while (links.step()) {
+    while (links.next()) {
       if (!std::ranges::binary_search(living, static_cast<std::uint64_t>(links.integer(1)))) {
         loose.push_back(links.integer(0));
       }

@@ -91,10 +91,11 @@ void MapFile::State::remove_place(std::int64_t number) {
   // Half empty blocks are written anew: the file stays within twice of what it holds, and each
   // place is copied about once.
   const std::int64_t last = signed_of(records.back().number);
-  Statement gone_rows(database, "SELECT place FROM removed WHERE place BETWEEN ? AND ?");
+  Statement gone_rows(database,
+                      "SELECT place FROM removed WHERE place BETWEEN ? AND ? ORDER BY place");
   gone_rows.with(first, last);
   std::vector<std::int64_t> gone;
-  while (gone_rows.step()) gone.push_back(gone_rows.integer(0));
+  while (gone_rows.next()) gone.push_back(gone_rows.integer(0));
   if (gone.size() * 2 < records.size()) return;
   find.with(std::int64_t{-1});
   Statement whole(database, std::string(block_columns) + "FROM block WHERE first = ?");

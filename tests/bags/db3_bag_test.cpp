@@ -7,6 +7,7 @@
 
 #if SEQLOOP_SQLITE
 #include "bags/db3_file.hpp"
+#include "pages_in_circles.hpp"
 
 namespace seqloop::bags {
 namespace {
@@ -89,44 +90,12 @@ TEST(Db3Bag, AFileOfAFolderThatIsNoneSaysWhyInItsTurn) {
   EXPECT_EQ(bag->next(message), Read::end);
 }
 
-/// Puts `number` into bytes, the highest first.
-void put(std::string& bytes, std::size_t place, std::size_t number, int size) {
-  for (int i = size; i-- > 0; number >>= 8U)
-    bytes.at(place + static_cast<std::size_t>(i)) = static_cast<char>(number & 0xffU);
-}
-
-/// An inner page of a table that leads to the same page 500 times.
-std::string page_to(std::size_t child) {
-  constexpr std::size_t cells = 500;
-  constexpr std::size_t cell_bytes = 5;  // the page below, and its last row
-  std::string page(4096, '\0');
-  page[0] = 5;
-  put(page, 3, cells, 2);
-  put(page, 5, page.size() - cell_bytes * cells, 2);
-  put(page, 8, child, 4);
-  for (std::size_t i = 1; i <= cells; ++i) {
-    const std::size_t cell = page.size() - cell_bytes * i;
-    put(page, 10 + 2 * i, cell, 2);
-    put(page, cell, child, 4);
-    page[cell + 4] = 5;
-  }
-  return page;
-}
-
 TEST(Db3Bag, PagesInCirclesAreDamage) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "b.db3";
   test::write_db3(file, 1, {{"/camera", "sensor_msgs/msg/Image"}},
                   std::vector<test::Db3Message>(10, {1, 7, {9}}));
-  std::string bytes = test::read_all(file);
-  constexpr std::size_t page = 4096;
-  const std::size_t pages = bytes.size() / page;
-  std::size_t root = 0;  // of the table of messages: page 1 holds the schema, 2 the topics
-  while (bytes.substr(root, 5) != std::string("\x0d\0\0\0\x0a", 5)) root += page;
-  bytes += page_to(pages + 2) + bytes.substr(root, page);
-  bytes.replace(root, page, page_to(pages + 1));
-  put(bytes, 28, pages + 2, 4);
-  folder.write("b.db3", bytes);
+  test::lead_in_circles(file, "messages");
   EXPECT_TRUE(test::says(test::setup_error([&] { static_cast<void>(open_bag(file)); }),
                          "b.db3: is damaged: it has more rows than there is room for in it"));
 }

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <set>
 
 #include "expect_setup_error.hpp"
+#include "pages_in_circles.hpp"
 #include "seqloop/sqlite/recover.hpp"
 #include "sqlite/recording_vfs.hpp"
 #include "sqlite/sample_map.hpp"
@@ -255,6 +257,36 @@ TEST_P(MapDamage, IsNamedAndWhatIsWholeIsRecovered) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MapDamage, testing::Range(1U, 11U));
 
+void change(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+}
+
+TEST(MapInCircles, EndsWhereRowsComeAgain) {
+  const test::TemporaryFolder folder(in_memory());
+  const Sample sample;
+  const auto read_all = [](const MapFile& map) { map.read([](const sqlite::PlaceBlock&) {}); };
+  const std::initializer_list<std::pair<const char*, std::function<void(const MapFile&)>>> reads{
+      {"session", [](const MapFile& map) { (void)map.sessions(); }},
+      {"block", read_all},
+      {"removed", read_all},
+      {"link", [](const MapFile& map) { map.read_links([](const sqlite::SavedLink&) {}); }},
+      {"thumbnail",
+       [](const MapFile& map) { map.read_thumbnails([](const sqlite::SavedThumbnail&) {}); }},
+      {"thumbnail", [](const MapFile& map) { (void)map.thumbnail_facts(); }}};
+  for (const auto& [table, read] : reads) {
+    SCOPED_TRACE(table);
+    const fs::path file = folder.write(table, sample.bytes());
+    change(file, "INSERT INTO removed VALUES(99, " +
+                     std::to_string(sqlite::row_checksum("removed", std::int64_t{99})) + ")");
+    test::lead_in_circles(file, table);
+    const MapFile map = MapFile::read_only(file);
+    EXPECT_TRUE(test::says(test::setup_error([&] { read(map); }), "the same rows come again"));
+  }
+}
+
 TEST(MapRecovery, NeedsAMap) {
   const test::TemporaryFolder folder(in_memory());
   const std::string refused = test::setup_error([&] {
@@ -262,13 +294,6 @@ TEST(MapRecovery, NeedsAMap) {
   });
   EXPECT_TRUE(test::says(refused, "nothing of a map is whole in it"));
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
-}
-
-void change(const fs::path& file, const std::string& sql) {
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(database);
 }
 
 /// A map of sessions with five places each. @return what the map knows of the last
