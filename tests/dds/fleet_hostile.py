@@ -5,6 +5,7 @@
 Usage: fleet_hostile.py SEQLOOP FAST_END
 """
 import pathlib
+import signal
 import struct
 import subprocess
 import sys
@@ -19,8 +20,8 @@ FRAMES = 1200
 SECOND = 1_000_000_000
 
 
-def about(robot: str, describer: str = "descriptors") -> tuple:
-    return robot, "today", "int8 euclidean raw", describer, SIZE, SIZE
+def about(robot: str, describer: str = "descriptors", place_bytes: int = SIZE) -> tuple:
+    return robot, "today", "int8 euclidean raw", describer, SIZE, place_bytes
 
 
 def place(session: int, frame: int, time_ns: int, who: tuple | None = None, content: bytes = bytes(SIZE),
@@ -54,18 +55,42 @@ def attacks() -> list[bytes]:
     return said
 
 
+def say(fast_end: str, messages: list[bytes]) -> int:
+    """Two thousand a second."""
+    evil = subprocess.Popen([fast_end, "publish", "seqloop_fleet/places", "seqloop_fleet::Place", "reliable", "test"],
+                            stdin=subprocess.PIPE, env=ros.environment())
+    evil.communicate(b"".join(struct.pack("<II", len(message), 500 * i) + message
+                              for i, message in enumerate(messages)), timeout=100)
+    return evil.returncode
+
+
+def fresh_keeper(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
+    """A keeper without a file hears first of places that no map can have."""
+    said = work / "keeper.said"
+    with said.open("w") as words:
+        keeper = subprocess.Popen([seqloop, "keep", "--map", work / "kept.seqloop", "--fleet", "test"], stderr=words,
+                                  env=ros.environment())
+    names = [about("nothing", place_bytes=0), about("huge", place_bytes=2**26 + 1), about("huge", place_bytes=2**32 - 1),
+             about("good")]
+    expect(say(fast_end, [place(1000 + i, frame, 10 * SECOND, who, b"" if who[5] == 0 else bytes(SIZE))
+                          for i, who in enumerate(names) for frame in range(3)]) == 0, "all of it was said")
+    time.sleep(1.0)
+    expect(keeper.poll() is None, f"the keeper goes on: {said.read_text()}")
+    keeper.send_signal(signal.SIGTERM)
+    words = said.read_text() if keeper.wait(timeout=60) == 0 else "it failed"
+    expect(words.count("robot 'nothing', session 'today': it says 0 bytes a place, and a map has 1 to 67108864: none") == 1
+           and words.count(" bytes a place") == 1, f"it says once that such places cannot be: {words}")
+    expect("3 places of 1 sessions are kept" in words, "and keeps those that can")
+
+
 def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
+    fresh_keeper(seqloop, fast_end, work)
     seen = way(FRAMES)
     anna = Robot(seqloop, work, "anna", drive(work, "anna", seen, 1), "anna.seqloop")
     time.sleep(1.0)
     bert = Robot(seqloop, work, "bert", drive(work, "bert", seen, 2), "bert.seqloop")
     time.sleep(1.0)  # both hear it from the first
-    evil = subprocess.Popen([fast_end, "publish", "seqloop_fleet/places", "seqloop_fleet::Place", "reliable", "test"],
-                            stdin=subprocess.PIPE, env=ros.environment())
-    # Two thousand a second.
-    evil.communicate(b"".join(struct.pack("<II", len(message), 500 * i) + message
-                              for i, message in enumerate(attacks())), timeout=100)
-    expect(evil.returncode == 0, "all of it was said")
+    expect(say(fast_end, attacks()) == 0, "all of it was said")
     lines = {robot.name: robot.end() for robot in (anna, bert)}
     found = len(loops(lines["bert"], "anna"))
     expect(found > FRAMES / 4, f"bert finds loops with anna, who is a second ahead: {found}")

@@ -8,6 +8,7 @@ import bisect
 import json
 import pathlib
 import random
+import resource
 import signal
 import sqlite3
 import struct
@@ -30,6 +31,10 @@ class Keeper:
         with self.said.open("a") as said:
             self.process = subprocess.Popen([seqloop, "keep", "--map", work / "kept.seqloop", "--fleet", "test",
                                              "--save-every-s", "0.05"], stderr=said, env=ros.environment())
+
+    def let_write(self, file_bytes: int) -> None:
+        """How large it may make a file: what it writes beyond that fails as on a full disk."""
+        resource.prlimit(self.process.pid, resource.RLIMIT_FSIZE, (file_bytes, resource.RLIM_INFINITY))
 
     def kill(self) -> None:
         if self.process.poll() is not None:
@@ -124,6 +129,27 @@ def power_cut(seqloop: str, work: pathlib.Path) -> None:
     expect(len({began for began, _ in kept}) == runs, "a session for each time that it was switched on")
 
 
+def full_disk(seqloop: str, work: pathlib.Path) -> None:
+    """Where there is no room for a file, and later none for a session, the keeper waits, and then has all."""
+    work.mkdir()
+    seen = way(200)
+    keeper = Keeper(seqloop, work)
+    robots = []
+    for name in ("anna", "bert"):
+        keeper.let_write(4096)
+        robots.append(Robot(seqloop, work, name, drive(work, name, seen, len(robots)), f"{name}.seqloop"))
+        time.sleep(2.0)
+        expect(keeper.process.poll() is None, "the keeper waits for room: " + keeper.said.read_text()[-300:])
+        keeper.let_write(resource.RLIM_INFINITY)
+        robots[-1].end()
+        time.sleep(1.0)
+    keeper.end()
+    told = places(work / "anna.seqloop") | places(work / "bert.seqloop")
+    expect(places(work / "kept.seqloop") == told, f"and keeps all, to the byte: {len(told)} places")
+    words = keeper.said.read_text()
+    expect(words.count("what was told is saved again") == 2, "each time it says that it goes on: " + words)
+
+
 def main(seqloop: str, times: int, work: pathlib.Path) -> None:
     print(f"seed {SEED}")
     chance = random.Random(SEED)
@@ -179,4 +205,5 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         localises(sys.argv[1], pathlib.Path(folder) / "whole")
         power_cut(sys.argv[1], pathlib.Path(folder) / "cut")
+        full_disk(sys.argv[1], pathlib.Path(folder) / "full")
         main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

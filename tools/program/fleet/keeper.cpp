@@ -46,11 +46,31 @@ Keeper::Keeper(std::filesystem::path file, const FleetSettings& settings,
   know_sessions();
 }
 
-/// Makes the file, of the form that the first robot tells.
-void Keeper::open(const dds::FleetSession& about) {
-  file_ = sqlite::MapFile::open(path_, sqlite::MapForm{about.form, about.describer,
-                                                       about.descriptor_size, about.place_bytes});
+/// Whether a map can have such places. What the first robot tells decides what all are like, and
+/// anybody may tell anything.
+bool Keeper::can_be_kept(const dds::FleetPlace& place, const dds::FleetSession& about) {
+  if (about.place_bytes >= 1 && about.place_bytes <= sqlite::most_place_bytes) return true;
+  if (!std::exchange(refusing_, true)) {
+    const Others::Names names = Others::names_of(about, place.session);
+    news_.push_back(
+        fmt::format("robot '{}', session '{}': it says {} bytes a place, and a map has 1 to {}: "
+                    "none is kept; look at what it runs",
+                    names.robot, names.session, about.place_bytes, sqlite::most_place_bytes));
+  }
+  return false;
+}
+
+/// Makes the file, of the form that the first robot tells. @return whether the disk took it
+bool Keeper::open(const dds::FleetSession& about) {
+  try {
+    file_ = sqlite::MapFile::open(path_, sqlite::MapForm{about.form, about.describer,
+                                                         about.descriptor_size, about.place_bytes});
+  } catch (const SetupError& error) {
+    fail(error.what());
+    return false;
+  }
   know_sessions();
+  return true;
 }
 
 /// Goes on where the file ends.
@@ -117,11 +137,11 @@ void Keeper::hear() {
   const auto gone = [this](std::int64_t began) {
     for (Session& session : sessions_) session.gone |= session.names.began_ns == began;
   };
-  for (std::size_t i = 0; i < most_a_round && waiting_ < most_waiting; ++i) {
+  for (std::size_t i = 0; i < most_a_round && waiting_ < most_waiting && !first_; ++i) {
     if (!wire_.take(hear, gone)) break;
   }
   if (!others_) return;
-  while (waiting_ < most_waiting) {
+  while (waiting_ < most_waiting && !first_) {
     const std::optional<dds::FleetPlace> visit = others_->next_visit();
     if (!visit) break;
     this->hear(*visit, nullptr);
@@ -130,14 +150,16 @@ void Keeper::hear() {
 }
 
 void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) {
+  const bool is_place = !place.visit && !place.statistics;
+  if (is_place && place.frame >= frames_of_a_session) return;
   if (!file_) {
-    if (about == nullptr) return;
-    open(*about);
+    if (is_place && about != nullptr && can_be_kept(place, *about)) begin({place, {}, *about, {}});
+    return;
   }
   if (place.statistics) {
     const auto index = others_->statistics(place);
     if (!index) return;
-    begin(*index).statistics = {
+    session(*index).statistics = {
         place.statistics->frames,
         {place.statistics->mean.begin(), place.statistics->mean.end()},
         {place.statistics->variance.begin(), place.statistics->variance.end()}};
@@ -147,18 +169,44 @@ void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) 
     const auto same = others_->same_place(place);
     if (!same) return others_->wait_for_places(place);
     if (links_.size() >= links_a_place * others_->places()) return;
-    Session& session = begin(same->session);
-    const std::uint64_t number = number_of(session.id, place.frame);
-    const std::uint64_t other = number_of(begin(same->visited).id, place.visit->frame);
+    Session& own = session(same->session);
+    const std::uint64_t number = number_of(own.id, place.frame);
+    const std::uint64_t other = number_of(session(same->visited).id, place.visit->frame);
     if (!links_.emplace(number, other).second) return;
-    session.links.push_back({session.id, place.frame, number, other, PlaceMap::likely});
+    own.links.push_back({own.id, place.frame, number, other, PlaceMap::likely});
     ++waiting_;
     return;
   }
-  if (place.frame >= frames_of_a_session) return;
   const auto index = others_->hear(place, about);
   if (!index) return;
-  Session& session = begin(*index);
+  if (*index < heard_as_.size() && heard_as_[*index]) return keep(place, session(*index));
+  begin({place, {}, {}, index});
+}
+
+/// Where the disk is full, this waits, and nothing else is heard: it waits in DDS.
+void Keeper::begin(First first) {
+  first.bytes.assign(first.place.bytes.begin(), first.place.bytes.end());
+  first.place.bytes = first.bytes;
+  first_ = std::move(first);
+  try_to_begin();
+}
+
+void Keeper::try_to_begin() {
+  if (!file_ && !open(first_->about)) return;
+  try {
+    if (!first_->index) first_->index = others_->hear(first_->place, &first_->about);
+    if (first_->index) keep(first_->place, session_in_file(*first_->index));
+    first_.reset();
+  } catch (const sqlite::SaveError& error) {
+    fail(error.what());
+  }
+}
+
+void Keeper::fail(const char* why) {
+  if (!std::exchange(failing_, true)) news_.emplace_back(why);
+}
+
+void Keeper::keep(const dds::FleetPlace& place, Session& session) {
   session.gone = false;
   if (session.closed) return;
   session.records.push_back({number_of(session.id, place.frame), place.frame, place.time_ns});
@@ -167,11 +215,9 @@ void Keeper::hear(const dds::FleetPlace& place, const dds::FleetSession* about) 
   ++waiting_;
 }
 
-/// A session of the file for one that is heard. Where the disk is full, this waits: what is told
-/// meanwhile waits in DDS.
-Keeper::Session& Keeper::begin(std::uint32_t index) {
+/// A session of the file for one that is heard. Throws SaveError.
+Keeper::Session& Keeper::session_in_file(std::uint32_t index) {
   if (heard_as_.size() <= index) heard_as_.resize(index + 1);
-  if (heard_as_[index]) return sessions_[*heard_as_[index]];
   // Begun before, and killed before anything of it was saved.
   const std::int64_t began = others_->names(index).began_ns;
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
@@ -199,6 +245,7 @@ Keeper::Session& Keeper::begin(std::uint32_t index) {
 /// All that waits; what the disk does not take goes on waiting.
 void Keeper::save() {
   saved_ = std::chrono::steady_clock::now();
+  if (first_) try_to_begin();
   try {
     for (Session& session : sessions_) {
       if (session.records.empty() && session.links.empty() && !session.statistics) continue;
@@ -222,9 +269,10 @@ void Keeper::save() {
       session.links.clear();
       session.statistics.reset();
     }
-    if (std::exchange(failing_, false)) news_.emplace_back("what was told is saved again");
+    if (!first_ && std::exchange(failing_, false))
+      news_.emplace_back("what was told is saved again");
   } catch (const sqlite::SaveError& error) {
-    if (!std::exchange(failing_, true)) news_.emplace_back(error.what());
+    fail(error.what());
   }
 }
 
@@ -304,8 +352,8 @@ std::optional<dds::FleetVisit> Keeper::told_as(std::uint64_t number) const {
 }
 
 std::string Keeper::end() {
-  if (!file_) return "nothing was heard, and nothing is kept";
   save();
+  if (!file_) return "nothing is kept";
   if (wire_.others() > 0) wire_.flush(patience);
   std::uint64_t places = 0;
   const auto sessions = file_->sessions();

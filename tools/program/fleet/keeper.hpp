@@ -57,12 +57,26 @@ class Keeper {
     std::optional<sqlite::SavedStatistics> statistics;
   };
 
-  void open(const dds::FleetSession& about);
+  /// The first place of a session that the file has not begun yet.
+  struct First {
+    dds::FleetPlace place;
+    std::vector<std::byte> bytes;  // of it
+    dds::FleetSession about;
+    std::optional<std::uint32_t> index;  // in `others_`; none: there is no file yet
+  };
+
+  [[nodiscard]] bool can_be_kept(const dds::FleetPlace& place, const dds::FleetSession& about);
+  [[nodiscard]] bool open(const dds::FleetSession& about);
   void know_sessions();
   void hear();
   void hear(const dds::FleetPlace& place, const dds::FleetSession* about);
-  Session& begin(std::uint32_t index);
+  void begin(First first);
+  void try_to_begin();
+  Session& session(std::uint32_t index) { return sessions_[*heard_as_[index]]; }
+  Session& session_in_file(std::uint32_t index);
+  void keep(const dds::FleetPlace& place, Session& session);
   void save();
+  void fail(const char* why);
   void tell(const std::function<bool()>& stop);
   [[nodiscard]] bool publish(const dds::FleetPlace& place, const dds::FleetSession* about,
                              const std::function<bool()>& stop);
@@ -78,9 +92,11 @@ class Keeper {
   std::vector<std::optional<std::size_t>> heard_as_;  // by index in `others_`
   std::unordered_map<std::uint64_t, dds::FleetVisit> earlier_;  // by number: of what does not grow
   std::set<std::pair<std::uint64_t, std::uint64_t>> links_;
-  std::size_t waiting_ = 0;  // places
+  std::optional<First> first_;  // waits for room on the disk, and so does what comes after it
+  std::size_t waiting_ = 0;     // places
   std::chrono::steady_clock::time_point saved_;
   bool failing_ = false;
+  bool refusing_ = false;
   std::vector<std::string> news_;
 };
 

@@ -49,6 +49,11 @@ Others::Others(dds::FleetSession own, std::vector<std::int64_t> in_map, std::siz
   names_.reserve(most_fleet_sessions);
 }
 
+Others::Names Others::names_of(const dds::FleetSession& session, std::int64_t began_ns) {
+  return {name_of(session.robot, "without a name"), name_of(session.name, "without a name"),
+          began_ns};
+}
+
 std::optional<std::uint32_t> Others::hear(const dds::FleetPlace& place,
                                           const dds::FleetSession* about) {
   if (std::ranges::binary_search(in_map_, place.session)) return std::nullopt;
@@ -163,8 +168,7 @@ Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSes
     return nullptr;
   }
   Session session;
-  session.names = {name_of(about->robot, "without a name"), name_of(about->name, "without a name"),
-                   place.session};
+  session.names = names_of(*about, place.session);
   session.refused = !alike(*about, own_);
   if (session.refused) {
     tell(

@@ -34,6 +34,9 @@ class Others {
     std::string session;
     std::int64_t began_ns = 0;
   };
+  /// @param began_ns when the session began
+  [[nodiscard]] static Names names_of(const dds::FleetSession& session, std::int64_t began_ns);
+
   /// What is known of a session from before this program began: as if it had been heard.
   struct Before {
     std::uint64_t places = 0;   ///< 1 or more

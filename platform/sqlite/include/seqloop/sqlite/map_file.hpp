@@ -14,12 +14,15 @@
 
 namespace seqloop::sqlite {
 
+/// Bytes of a place that can be saved.
+constexpr std::uint64_t most_place_bytes = std::uint64_t{1} << 26U;
+
 /// What all places of a map have in common: only such places can be compared.
 struct MapForm {
   std::string form;       ///< how a place is kept, in the caller's words: "int8 euclidean"
   std::string describer;  ///< fingerprint of the model and its settings that made the descriptors
   std::uint64_t descriptor_size = 0;  ///< D
-  std::uint64_t place_bytes = 0;      ///< of each place, 1 .. 2^26
+  std::uint64_t place_bytes = 0;      ///< of each place, 1 .. most_place_bytes
 
   bool operator==(const MapForm&) const = default;
 };
