@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dds/entity.hpp"
 #include "dds/topic_type.hpp"
 #include "seqloop/fault.hpp"
 
@@ -72,35 +73,39 @@ Participant::Participant(const Network& network) : log_(std::make_unique<Log>())
   };
   domain_ = must(dds_create_domain(network.domain, network.configuration.c_str()), "opening");
   handle_ = must(dds_create_participant(network.domain, nullptr, nullptr), "joining");
-  publications_ = must(
-      dds_create_reader(handle_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr), "watching");
 }
 
 Participant::~Participant() { dds_delete(domain_); }
 
 std::optional<Offer> Participant::offer(const std::string& topic) const {
-  constexpr std::uint32_t most = 1024;  // publishers in the whole network
+  constexpr std::uint32_t most = 1U << 20U;  // publishers in the whole network
+  constexpr std::uint32_t at_once = 1024;
   const std::string wanted = wire_name(topic);
   std::optional<Offer> newest;
   dds_time_t newest_time = 0;
-  // Read, not taken: those that are there stay in the reader.
-  std::vector<void*> samples(most);
-  std::vector<dds_sample_info_t> infos(most);
-  const std::int32_t count =
-      dds_read_mask(publications_, samples.data(), infos.data(), most, most,
-                    DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
-  for (std::int32_t i = 0; i < count; ++i) {
-    const auto place = static_cast<std::size_t>(i);
-    const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[place]);
-    if (!infos[place].valid_data || endpoint->topic_name != wanted) continue;
-    if (newest && infos[place].source_timestamp < newest_time) continue;
-    newest_time = infos[place].source_timestamp;
-    dds_reliability_kind_t kind = DDS_RELIABILITY_BEST_EFFORT;
-    dds_duration_t blocking = 0;
-    dds_qget_reliability(endpoint->qos, &kind, &blocking);
-    newest = Offer{ros_type(endpoint->type_name), kind == DDS_RELIABILITY_RELIABLE};
+  // A new reader has all that are there. Only what is taken from it is not read again.
+  const Entity publications(
+      dds_create_reader(handle_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr), topic);
+  std::vector<void*> samples(at_once);
+  std::vector<dds_sample_info_t> infos(at_once);
+  for (std::uint32_t seen = 0; seen < most; seen += at_once) {
+    const std::int32_t count =
+        dds_take_mask(publications.handle(), samples.data(), infos.data(), at_once, at_once,
+                      DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
+    for (std::int32_t i = 0; i < count; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[place]);
+      if (!infos[place].valid_data || endpoint->topic_name != wanted) continue;
+      if (newest && infos[place].source_timestamp < newest_time) continue;
+      newest_time = infos[place].source_timestamp;
+      dds_reliability_kind_t kind = DDS_RELIABILITY_BEST_EFFORT;
+      dds_duration_t blocking = 0;
+      dds_qget_reliability(endpoint->qos, &kind, &blocking);
+      newest = Offer{ros_type(endpoint->type_name), kind == DDS_RELIABILITY_RELIABLE};
+    }
+    if (count > 0) dds_return_loan(publications.handle(), samples.data(), count);
+    if (count < static_cast<std::int32_t>(at_once)) break;
   }
-  if (count > 0) dds_return_loan(publications_, samples.data(), count);
   return newest;
 }
 

@@ -168,6 +168,26 @@ TEST_F(TopicCameraTest, NobodyPublishes) {
       << captured.fault.view();
 }
 
+TEST_F(TopicCameraTest, IsFoundAmongThousandsOfPublishers) {
+  const Entity crowd(dds_create_participant(own_network().domain + further, nullptr, nullptr),
+                     "crowd");
+  const Entity topic(
+      dds_create_topic(crowd.handle(), image_.descriptor, "rt/other", nullptr, nullptr), "other");
+  constexpr int publishers = 2500;
+  for (int i = 0; i < publishers; ++i) {
+    ASSERT_GT(dds_create_writer(crowd.handle(), topic.handle(), nullptr, nullptr), 0);
+  }
+  Camera publisher("/camera", image_, true);
+  std::optional<Offer> offer;
+  for (int i = 0; i < 200 && !offer; ++i) {
+    clock_.sleep_until(clock_.now() + milliseconds(50));
+    offer = participant_->offer("/camera");
+  }
+  ASSERT_TRUE(offer);
+  EXPECT_EQ(offer->type, image_.name);
+  EXPECT_TRUE(offer->reliable);
+}
+
 TEST_F(TopicCameraTest, EveryEncodingAndSizeAsItWasSent) {
   struct Case {
     const char* encoding;

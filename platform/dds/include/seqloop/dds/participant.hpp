@@ -46,7 +46,6 @@ class Participant {
   std::unique_ptr<Log> log_;
   std::int32_t domain_ = 0;
   std::int32_t handle_ = 0;
-  std::int32_t publications_ = 0;  // a reader of who publishes what
 };
 
 }  // namespace seqloop::dds
