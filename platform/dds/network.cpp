@@ -34,14 +34,18 @@ std::string_view localhost(const Environment& environment, Faults& faults) {
     return value == nullptr ? std::string_view() : value;
   };
   const std::string_view range = text(range_name);
+  // Newer ones still obey the older variable, and then ignore their own.
+  if (text("ROS_LOCALHOST_ONLY") == "1") {
+    const std::string_view distribution = text("ROS_DISTRO");
+    const bool newer = !range.empty() || (!distribution.empty() && distribution != "humble");
+    return newer ? iron_localhost : humble_localhost;
+  }
   if (range == "LOCALHOST") return iron_localhost;
   if (range == "OFF") {
     faults.push_back({range_name, "is OFF: nobody can be found", "set it to LOCALHOST or SUBNET"});
   } else if (!range.empty() && range != "SUBNET" && range != "SYSTEM_DEFAULT") {
     faults.push_back({range_name, "'" + std::string(range) + "' is no range",
                       "SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT"});
-  } else if (range.empty() && text("ROS_LOCALHOST_ONLY") == "1") {
-    return humble_localhost;
   }
   return {};
 }

@@ -62,10 +62,19 @@ TEST(Network, StaysOnThisMachineAsHumbleOrAsIronHaveIt) {
   const char* const range = "ROS_AUTOMATIC_DISCOVERY_RANGE";
   EXPECT_TRUE(says(of({{"ROS_LOCALHOST_ONLY", "1"}}), "address=\"127.0.0.1\""));
   EXPECT_FALSE(says(of({{"ROS_LOCALHOST_ONLY", "0"}}), "127.0.0.1"));
-  const Network iron = of({{range, "LOCALHOST"}, {"ROS_LOCALHOST_ONLY", "1"}});
-  EXPECT_TRUE(says(iron, "AllowMulticast>false") && says(iron, "Peer Address=\"localhost\""));
-  EXPECT_FALSE(says(iron, "address=\"127.0.0.1\""));
-  EXPECT_FALSE(says(of({{range, "SUBNET"}, {"ROS_LOCALHOST_ONLY", "1"}}), "127.0.0.1"));
+  const auto is_iron = [](const Network& network) {
+    return says(network, "AllowMulticast>false") && says(network, "Peer Address=\"localhost\"") &&
+           !says(network, "address=\"127.0.0.1\"");
+  };
+  EXPECT_TRUE(is_iron(of({{range, "LOCALHOST"}})));
+  // Who has the newer variable, or a newer ROS 2, speaks with others as newer ones do.
+  for (const char* const value : {"LOCALHOST", "SUBNET", "SYSTEM_DEFAULT", "OFF"}) {
+    EXPECT_TRUE(is_iron(of({{range, value}, {"ROS_LOCALHOST_ONLY", "1"}}))) << value;
+  }
+  EXPECT_TRUE(is_iron(of({{"ROS_DISTRO", "jazzy"}, {"ROS_LOCALHOST_ONLY", "1"}})));
+  EXPECT_TRUE(
+      says(of({{"ROS_DISTRO", "humble"}, {"ROS_LOCALHOST_ONLY", "1"}}), "address=\"127.0.0.1\""));
+  EXPECT_FALSE(is_iron(of({{range, "SUBNET"}, {"ROS_LOCALHOST_ONLY", "0"}})));
   EXPECT_EQ(test::setup_error([&] {
               of({{range, "OFF"}, {"ROS_DOMAIN_ID", "x"}});
             }),

@@ -17,9 +17,10 @@ struct Network {
 /// A variable of the environment. @return null where it is not set
 using Environment = std::function<const char*(const char*)>;
 
-/// What ROS 2's variables ask for: ROS_DOMAIN_ID; ROS_AUTOMATIC_DISCOVERY_RANGE as Iron and later
-/// have it or, where that is not set, ROS_LOCALHOST_ONLY as Humble has it (the two do not find each
-/// other); CYCLONEDDS_URI, which overrides the rest. Messages of more than 128 MiB are not taken
+/// What ROS 2's variables ask for: ROS_DOMAIN_ID; ROS_AUTOMATIC_DISCOVERY_RANGE;
+/// ROS_LOCALHOST_ONLY, which wins over it. This machine only is as Iron and later have it where the
+/// range is set or ROS_DISTRO is another than humble, otherwise as Humble has it; the two do not
+/// find each other. CYCLONEDDS_URI overrides the rest. Messages of more than 128 MiB are not taken
 /// unless that raises Internal/MaxSampleSize.
 /// @param priority SCHED_FIFO priority of the threads that receive; 0: ordinary scheduling
 /// Throws SetupError: a domain or a range that is none; discovery that is switched off.
