@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/dds/odometry_topic.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -64,11 +65,17 @@ void OdometryTopic::listen() noexcept {
   }
 }
 
+/// Stamps that go back are kept: whether one of them is odd, or the clock was set back, is known
+/// only later.
 void OdometryTopic::keep(const ros::OdometryPose& pose) {
+  constexpr std::int64_t longest_interval_ns = 1'000'000'000;
   const std::scoped_lock lock(mutex_);
-  if (!poses_.empty() && pose.stamp_ns < poses_.back().stamp_ns + least_interval_ns_) return;
+  if (!poses_.empty()) {
+    const std::int64_t since_last = pose.stamp_ns - poses_.back().stamp_ns;
+    if (since_last >= 0 && since_last < least_interval_ns_) return;
+  }
   if (poses_.size() >= most_) {
-    least_interval_ns_ *= 2;
+    least_interval_ns_ = std::min(2 * least_interval_ns_, longest_interval_ns);
     for (std::size_t i = 0; 2 * i < poses_.size(); ++i) poses_[i] = poses_[2 * i];
     poses_.resize((poses_.size() + 1) / 2);
   }

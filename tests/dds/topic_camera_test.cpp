@@ -23,6 +23,7 @@
 #include "dds/idl/ros2.h"
 #include "dds/topic_type.hpp"
 #include "expect_setup_error.hpp"
+#include "seqloop/dds/odometry_topic.hpp"
 #include "seqloop/linux/steady_clock.hpp"
 
 namespace seqloop::dds {
@@ -327,6 +328,40 @@ TEST_F(TopicCameraTest, ATopicOfSomethingElseIsNamed) {
   EXPECT_EQ(captured.what, Capture::lost);
   EXPECT_TRUE(captured.fault.view().starts_with("/camera is nav_msgs/msg/Odometry, not "))
       << captured.fault.view();
+}
+
+TEST_F(TopicCameraTest, OdometryIsKeptWhateverItsStampsDo) {
+  OdometryTopic odometry(*participant_, "/odom", 8);
+  Camera publisher("/odom", topic_type("nav_msgs/msg/Odometry"), true);
+  const std::string frame = "odom";
+  nav_msgs_msg_dds__Odometry_ message{};
+  message.header.frame_id = message.child_frame_id = text(frame);
+  const auto says = [&](std::int32_t seconds) {
+    message.header.stamp.sec = seconds;
+    publisher.write(&message);
+  };
+  const auto kept = [&](std::size_t least) {
+    std::vector<std::int64_t> seconds;
+    for (int i = 0; i < 100 && seconds.size() < least; ++i) {
+      clock_.sleep_until(clock_.now() + milliseconds(50));
+      seconds.clear();
+      for (const ros::OdometryPose& pose : odometry.poses()) {
+        seconds.push_back(pose.stamp_ns / second);
+      }
+    }
+    return seconds;
+  };
+  for (int i = 0; i < 100 && odometry.poses().empty(); ++i) {  // until it is heard
+    says(99);
+    clock_.sleep_until(clock_.now() + milliseconds(50));
+  }
+  for (const int seconds : {100, 4000, 101, 50, 51, 51}) says(seconds);
+  EXPECT_EQ(kept(6), (std::vector<std::int64_t>{99, 100, 4000, 101, 50, 51}))
+      << "the last is early";
+  // Memory is bounded whatever comes.
+  for (int i = 0; i < 200; ++i) says(40 - i % 40);
+  clock_.sleep_until(clock_.now() + milliseconds(500));
+  EXPECT_LE(odometry.poses().size(), 8U);
 }
 
 TEST_F(TopicCameraTest, StopsWithinATimeStep) {

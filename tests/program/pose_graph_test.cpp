@@ -105,6 +105,81 @@ TEST(Odometry, FromABag) {
                  "has no topic /o of nav_msgs/msg/Odometry; there is /odom, /other"));
 }
 
+/// A robot that drives a metre a second, with odometry ten times a second.
+std::vector<ros::OdometryPose> driven(std::int64_t start_ns, int poses) {
+  std::vector<ros::OdometryPose> all;
+  for (int i = 0; i < poses; ++i) {
+    all.push_back({start_ns + i * std::int64_t{100'000'000}, {0.1 * i, 0.0, 0.0}, {0, 0, 0, 1}});
+  }
+  return all;
+}
+
+constexpr std::int64_t hour = 3'600'000'000'000;
+constexpr std::int64_t began = 1'700'000'000'000'000'000;
+
+TEST(Odometry, AnOddStampCostsOnePose) {
+  for (const std::int64_t odd :
+       {hour, -hour, std::int64_t{50'000'000}, -std::int64_t{150'000'000}}) {
+    SCOPED_TRACE(odd);
+    for (const SetBack clock : {SetBack::left_out, SetBack::begins_anew}) {
+      auto poses = driven(began, 100);
+      poses[40].stamp_ns += odd;
+      const Odometry odometry = odometry_of(poses, "/odom", began, clock);
+      for (const double time_s : {1.0, 3.95, 4.05, 9.9}) {
+        ASSERT_TRUE(odometry.at(time_s)) << time_s;
+        EXPECT_NEAR(odometry.at(time_s)->position[0], time_s, 0.1) << time_s;
+      }
+      EXPECT_LE(odometry.left_out(), 1U);
+    }
+  }
+}
+
+TEST(Odometry, AClockThatIsSetBack) {
+  auto poses = driven(began, 50);
+  for (ros::OdometryPose& pose : driven(began - hour, 100)) {
+    pose.position[1] = 7.0;
+    poses.push_back(pose);
+  }
+  const Odometry live = odometry_of(poses, "/odom", began - hour, SetBack::begins_anew);
+  EXPECT_EQ(live.left_out(), 50U);
+  ASSERT_TRUE(live.at(9.0));
+  EXPECT_EQ(live.at(9.0)->position[1], 7.0);
+  EXPECT_FALSE(live.at(3600.0 + 1.0)) << "of another time";
+  const Odometry recorded = odometry_of(poses, "/odom", began, SetBack::left_out);
+  EXPECT_EQ(recorded.left_out(), 100U);
+  EXPECT_EQ(recorded.at(4.0)->position[1], 0.0)
+      << "the times of a recording's frames do not go back";
+}
+
+TEST(Odometry, NothingIsKnownOfALongGap) {
+  auto poses = driven(began, 300);
+  poses.erase(poses.begin() + 100, poses.begin() + 210);
+  const Odometry odometry = odometry_of(poses, "/odom", began, SetBack::left_out);
+  EXPECT_TRUE(odometry.at(9.9));
+  EXPECT_FALSE(odometry.at(10.0));
+  EXPECT_FALSE(odometry.at(20.9));
+  EXPECT_TRUE(odometry.at(21.0));
+}
+
+TEST(PoseGraph, WhatOfTheOdometryIsMissingIsTold) {
+  const test::TemporaryFolder folder;
+  PoseGraph graph(folder.path() / "g.g2o", {});
+  auto poses = driven(began, 300);
+  poses.erase(poses.begin() + 100, poses.begin() + 210);
+  poses[20].stamp_ns += hour;
+  graph.begin(odometry_of(poses, "/odom", began, SetBack::left_out), 0.0, 4);
+  for (std::uint64_t frame = 0; frame < 31; ++frame) graph.add(frame, static_cast<double>(frame));
+  EXPECT_EQ(
+      graph.notes(),
+      (std::vector<std::string>{
+          "pose graph: 19 poses, 0 loops",
+          "1 frames lie outside of the odometry's times: they have no pose",
+          "11 frames lie between two poses of the odometry that are more than 10 s apart: they "
+          "have "
+          "no pose",
+          "1 poses of the odometry are left out: they are none, or their stamps do not rise"}));
+}
+
 TEST(Odometry, TimesOfAnotherClockAreRefused) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("o.tum", "1700000000 0 0 0 0 0 0 1\n1700000001 0 0 0 0 0 0 1\n");

@@ -117,8 +117,8 @@ std::optional<std::uint64_t> LoopOutputs::frame_of(std::uint64_t place) const {
 void LoopOutputs::end() {
   if (topic_.empty()) return;
   const std::int64_t start = drive_.start_ns();
-  graph_->begin(odometry_of(drive_.odometry(), topic_, start), static_cast<double>(start) * 1e-9,
-                drive_.sequence);
+  graph_->begin(odometry_of(drive_.odometry(), topic_, start, SetBack::begins_anew),
+                static_cast<double>(start) * 1e-9, drive_.sequence);
   for (const auto& [frame, time_s] : times_.all()) graph_->add(frame, time_s);
   graph_->add(loops_);
 }

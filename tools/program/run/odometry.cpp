@@ -33,15 +33,31 @@ bool take_numbers(std::string_view line, Line& numbers) {
   return std::find_if_not(at, end, is_blank) == end;
 }
 
-std::vector<Sample> samples_of(const std::vector<ros::OdometryPose>& poses, std::int64_t start_ns) {
+/// Samples whose times rise. Of a stamp that is behind the last one, but not behind the one before,
+/// the last was odd. One that is behind both is odd itself, unless the next goes on from it: then
+/// the clock was set back.
+std::vector<Sample> samples_of(const std::vector<ros::OdometryPose>& poses, std::int64_t start_ns,
+                               SetBack behind) {
   std::vector<Sample> samples;
+  std::optional<Sample> back;
   for (const ros::OdometryPose& pose : poses) {
     Sample sample{static_cast<double>(pose.stamp_ns - start_ns) * 1e-9,
                   {pose.position, pose.orientation}};
     const bool finite =
         std::ranges::all_of(pose.position, [](double x) { return std::isfinite(x); });
-    const bool rises = samples.empty() || sample.time_s > samples.back().time_s;
-    if (finite && rises && make_unit(sample.pose.orientation)) samples.push_back(sample);
+    if (!finite || !make_unit(sample.pose.orientation)) continue;
+    const std::optional<Sample> before = std::exchange(back, std::nullopt);
+    if (samples.empty() || sample.time_s > samples.back().time_s) {
+      samples.push_back(sample);
+    } else if (samples.size() == 1 || sample.time_s > samples[samples.size() - 2].time_s) {
+      samples.back() = sample;
+    } else if (behind == SetBack::begins_anew) {
+      if (before && sample.time_s > before->time_s) {
+        samples = {*before, sample};
+      } else {
+        back = sample;
+      }
+    }
   }
   return samples;
 }
@@ -66,6 +82,7 @@ std::optional<Pose> Odometry::at(double time_s) const noexcept {
   if (after->time_s == time_s) return after->pose;
   if (after == samples_.begin()) return std::nullopt;
   const Sample& before = *(after - 1);
+  if (after->time_s - before.time_s > most_gap_s) return std::nullopt;
   return between(before.pose, after->pose,
                  (time_s - before.time_s) / (after->time_s - before.time_s));
 }
@@ -98,11 +115,12 @@ Odometry parse_tum(const std::string& text, const std::string& name, double star
 }
 
 Odometry odometry_of(const std::vector<ros::OdometryPose>& poses, const std::string& topic,
-                     std::int64_t start_ns) {
-  std::vector<Sample> samples = samples_of(poses, start_ns);
+                     std::int64_t start_ns, SetBack behind) {
+  std::vector<Sample> samples = samples_of(poses, start_ns, behind);
   if (samples.size() < 2)
     throw SetupError({"odometry", topic + " holds fewer than two poses whose times rise"});
-  Odometry odometry(std::move(samples));
+  const std::size_t left_out = poses.size() - samples.size();
+  Odometry odometry(std::move(samples), left_out);
   check(odometry, topic);
   return odometry;
 }
@@ -111,7 +129,7 @@ Odometry read_odometry(const std::string& what, const std::filesystem::path& sou
                        std::int64_t start_ns) {
   std::error_code error;
   if (what.starts_with('/') && bags::is_bag(source) && !std::filesystem::exists(what, error)) {
-    return odometry_of(bags::read_odometry(source, what), what, start_ns);
+    return odometry_of(bags::read_odometry(source, what), what, start_ns, SetBack::left_out);
   }
   Odometry odometry = parse_tum(files::read_text(what), what, static_cast<double>(start_ns) * 1e-9);
   check(odometry, what);

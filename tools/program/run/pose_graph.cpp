@@ -69,7 +69,7 @@ void PoseGraph::add(std::uint64_t frame, double time_s) {
   if (const std::optional<Pose> pose = odometry_->at(time_s)) {
     vertices_.push_back({frame, time_s, *pose});
   } else {
-    ++without_pose_;
+    ++(time_s > odometry_->first_s() && time_s < odometry_->last_s() ? in_gaps_ : without_pose_);
   }
 }
 
@@ -93,6 +93,15 @@ std::vector<std::string> PoseGraph::notes() const {
   if (without_pose_ > 0)
     lines.push_back(fmt::format("{} frames lie outside of the odometry's times: they have no pose",
                                 without_pose_));
+  if (in_gaps_ > 0)
+    lines.push_back(
+        fmt::format("{} frames lie between two poses of the odometry that are more than {} s "
+                    "apart: they have no pose",
+                    in_gaps_, Odometry::most_gap_s));
+  if (odometry_ && odometry_->left_out() > 0)
+    lines.push_back(fmt::format(
+        "{} poses of the odometry are left out: they are none, or their stamps do not rise",
+        odometry_->left_out()));
   return lines;
 }
 

@@ -64,7 +64,8 @@ class PoseGraph {
   std::size_t sequence_ = 1;
   std::vector<Vertex> vertices_;
   std::vector<Loop> loops_;
-  std::uint64_t without_pose_ = 0;
+  std::uint64_t without_pose_ = 0;  // frames outside of the odometry's times
+  std::uint64_t in_gaps_ = 0;       // frames in its gaps
 };
 
 }  // namespace seqloop::program

@@ -15,7 +15,7 @@ namespace seqloop::dds {
 
 /// Listens to a topic `nav_msgs/msg/Odometry`, in a thread of its own, and keeps what it says, in
 /// bounded memory: at most a million poses (64 MB), of which ever fewer a second are kept as the
-/// drive grows. A publisher may come late, go and come back.
+/// drive grows. Stamps may go back. A publisher may come late, go and come back.
 class OdometryTopic {
  public:
   static constexpr std::size_t most_poses = 1'000'000;
