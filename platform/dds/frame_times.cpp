@@ -24,7 +24,7 @@ FrameTimes::Judged FrameTimes::judge(std::int64_t stamp_ns, Nanoseconds arrived,
   if (!stamped) odd = Odd::no_stamp;
   const std::int64_t since_last = (arrived - last_arrived_).count();
   if (frames_ == 0) {
-    start_ns_ = stamped ? stamp_ns : wall_ns;
+    begin_at(stamped ? stamp_ns : wall_ns);
   } else if (stamped && last_stamp_ > 0 && stamp_ns >= last_stamp_) {
     const std::int64_t interval = stamp_ns - last_stamp_;
     last_ns_ = std::min(last_ns_ + interval, most_stamp);
@@ -33,7 +33,7 @@ FrameTimes::Judged FrameTimes::judge(std::int64_t stamp_ns, Nanoseconds arrived,
     // Without a stamp, or with one of a clock that was set back, time goes on as it does here.
     if (stamped && last_stamp_ > 0) odd = Odd::went_back;
     last_ns_ += std::max<std::int64_t>(since_last, 0);
-    if (stamped) start_ns_ = stamp_ns - last_ns_;
+    if (stamped) begin_at(stamp_ns - last_ns_);
   }
   judged.time_s = static_cast<double>(last_ns_) / 1e9;
   judged.stamp = arrived;
@@ -48,6 +48,11 @@ FrameTimes::Judged FrameTimes::judge(std::int64_t stamp_ns, Nanoseconds arrived,
   ++frames_;
   judged.remark = tell(odd);
   return judged;
+}
+
+void FrameTimes::begin_at(std::int64_t start_ns) noexcept {
+  start_ns_ = start_ns;
+  stamps_.add(last_ns_, start_ns);
 }
 
 /// @param interval between two stamps. Once a few are known, a longer one than they are has a gap.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "dds/stamps.hpp"
 #include "seqloop/clock.hpp"
 
 namespace seqloop::dds {
@@ -30,15 +31,23 @@ class FrameTimes {
   /// What a header said, or would have, at second 0, in nanoseconds since 1970.
   [[nodiscard]] std::int64_t start_ns() const noexcept { return start_ns_; }
 
+  /// What the headers said at a time, or would have: also before they went back. Any thread may
+  /// ask. @param time_ns since second 0   @return 0 where nobody knows any more
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const noexcept {
+    return stamps_.at(time_ns);
+  }
+
  private:
   enum class Odd : std::uint8_t { none, no_stamp, went_back, other_clock };
 
+  void begin_at(std::int64_t start_ns) noexcept;
   [[nodiscard]] double usual_interval() const noexcept;
   [[nodiscard]] std::uint64_t missing(std::int64_t interval) noexcept;
   [[nodiscard]] std::string_view tell(Odd odd) noexcept;
 
   std::uint64_t frames_ = 0;
   std::int64_t start_ns_ = 0;
+  Stamps stamps_;
   std::int64_t last_ns_ = 0;     // since second 0
   std::int64_t last_stamp_ = 0;  // of the header
   Nanoseconds last_arrived_{0};

@@ -9,14 +9,14 @@
 #include "dds/entity.hpp"
 #include "dds/idl/ros2.h"
 #include "dds/idl/seqloop_msgs.h"
+#include "ros/time.hpp"
 
 namespace seqloop::dds {
 namespace {
 
 builtin_interfaces_msg_dds__Time_ time_of(std::int64_t time_ns) {
-  constexpr std::int64_t second = 1'000'000'000;
-  return {static_cast<std::int32_t>(time_ns / second),
-          static_cast<std::uint32_t>(time_ns % second)};
+  const ros::Time time = ros::time_of(time_ns);
+  return {time.sec, time.nanosec};
 }
 
 std_msgs_msg_dds__Header_ header(std::int64_t stamp_ns, const std::string& frame) {

@@ -153,6 +153,10 @@ void TopicCamera::time(Captured& captured, std::int64_t stamp_ns) noexcept {
   captured.remark.assign({judged.remark});
 }
 
+std::int64_t TopicCamera::stamp_ns(std::int64_t time_ns) const noexcept {
+  return ear_->times.stamp_ns(time_ns);
+}
+
 void TopicCamera::tell_absent(Captured& captured) noexcept {
   captured.what = Capture::lost;
   captured.fault = absence_;

@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "ros/time.hpp"
+
 namespace seqloop::ros {
 
 /// Reads a message as ROS 2 serialises it: four bytes that say how, then CDR. Version 1 and the
@@ -118,11 +120,11 @@ class CdrWriter {
     std::memcpy(bytes_.data() + place, &value, sizeof(Number));
   }
 
-  /// Seconds and nanoseconds. @param time_ns since 1970, 0 or more
+  /// @param time_ns since 1970
   void time(std::int64_t time_ns) {
-    constexpr std::int64_t second = 1'000'000'000;
-    number(static_cast<std::int32_t>(time_ns / second));
-    number(static_cast<std::uint32_t>(time_ns % second));
+    const Time time = time_of(time_ns);
+    number(time.sec);
+    number(time.nanosec);
   }
 
   void text(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace seqloop::dds {
 namespace {
@@ -77,6 +78,29 @@ TEST_F(FrameTimesTest, AClockThatIsSetBackDoesNotSetTheDriveBack) {
   const FrameTimes::Judged next = wait_and_judge(interval, first - 1'000'000'000 + interval);
   EXPECT_NEAR(next.time_s, 0.099999999, 1e-9);
   EXPECT_EQ(times_.start_ns() + std::llround(next.time_s * 1e9), first - 1'000'000'000 + interval);
+}
+
+TEST_F(FrameTimesTest, StampsFromBeforeAClockWasSetBackStay) {
+  // A simulation that begins again and again.
+  struct Shown {
+    std::int64_t time_ns;
+    std::int64_t stamp_ns;
+    std::size_t run;
+  };
+  constexpr std::size_t runs = Stamps::remembered + 10;
+  std::vector<Shown> shown;
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::int64_t i = 0; i < 50; ++i) {
+      const std::int64_t stamp = 100'000'000 + i * interval;
+      const double time_s = wait_and_judge(interval + 7, stamp).time_s;
+      shown.push_back({std::llround(time_s * 1e9), stamp, run});
+    }
+  }
+  for (const Shown& picture : shown) {
+    const bool known = picture.run + Stamps::remembered >= runs;
+    ASSERT_EQ(times_.stamp_ns(picture.time_ns), known ? picture.stamp_ns : 0) << picture.run;
+  }
+  EXPECT_EQ(FrameTimes().stamp_ns(5), 0) << "nothing has come";
 }
 
 TEST_F(FrameTimesTest, SimulatedTimeHasNoAge) {

@@ -30,6 +30,9 @@ class HeldCamera : public CaptureDevice {
   void give_back(const Captured& captured) noexcept override { camera_.give_back(captured); }
 
   [[nodiscard]] std::int64_t start_ns() const noexcept { return camera_.start_ns(); }
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const noexcept {
+    return camera_.stamp_ns(time_ns);
+  }
 
  private:
   std::shared_ptr<dds::Participant> participant_;
@@ -66,6 +69,9 @@ LiveTopic open_topic(const std::filesystem::path& path,
                                                     std::move(settings));
   topic.start_ns = [held, source = topic.source.get()] {
     return held->start_ns() + std::llround(source->first_time_s() * 1e9);
+  };
+  topic.stamp_ns = [held, source = topic.source.get()](double time_s) {
+    return held->stamp_ns(std::llround(source->first_time_s() * 1e9) + std::llround(time_s * 1e9));
   };
   return topic;
 }

@@ -30,6 +30,9 @@ struct LiveTopic {
   /// When second 0 was, in nanoseconds since 1970 by the headers; once a frame has come. May be
   /// called as long as the source is there.
   std::function<std::int64_t()> start_ns;
+  /// What the headers said at a time in seconds; likewise, and 0 where that is not known any more.
+  /// Any thread may ask.
+  std::function<std::int64_t(double time_s)> stamp_ns;
 };
 
 /// Begins to listen to pictures; whether anybody publishes any does not matter. They are decoded as

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -17,21 +16,16 @@ namespace seqloop::program {
   return answer.gate == Gate::match && answer.match.has_value();
 }
 
-/// @param start_ns when second 0 of the drive was, since 1970
-[[nodiscard]] inline std::int64_t stamp_of(std::int64_t start_ns, double time_s) noexcept {
-  return start_ns + std::llround(time_s * 1e9);
-}
-
 /// An answer that closes a loop, as ROS 2 is told it.
 /// @param times of the drive's frames
 /// @param own_places whether places are frames of the drive itself
 /// @param session of the place; empty where there is no map that lasts
 [[nodiscard]] inline ros::LoopClosure closure_of(const Answer& answer, const FrameTimes& times,
-                                                 std::int64_t start_ns, bool own_places,
+                                                 const StampAt& stamp_ns, bool own_places,
                                                  std::string_view session) noexcept {
   const auto stamp = [&](std::uint64_t frame) {
     const std::optional<double> time_s = times.at(frame);
-    return time_s ? stamp_of(start_ns, *time_s) : 0;
+    return time_s ? stamp_ns(*time_s) : 0;
   };
   return {.stamp_ns = stamp(answer.frame),
           .match_stamp_ns = own_places ? stamp(answer.match->frame()) : 0,
@@ -47,8 +41,8 @@ namespace seqloop::program {
 
 /// The same of a place of another robot.
 [[nodiscard]] inline ros::LoopClosure closure_of(const OtherLoop& loop, const FrameTimes& times,
-                                                 std::int64_t start_ns) noexcept {
-  ros::LoopClosure closure = closure_of(loop.answer, times, start_ns, false, loop.session.view());
+                                                 const StampAt& stamp_ns) noexcept {
+  ros::LoopClosure closure = closure_of(loop.answer, times, stamp_ns, false, loop.session.view());
   closure.robot = loop.robot.view();
   return closure;
 }

@@ -20,13 +20,12 @@ class ClosuresBag {
   explicit ClosuresBag(const std::filesystem::path& path);
 
   /// Adds those that are accepted. @param times of the drive's frames
-  /// @param start_ns when second 0 of the drive was, since 1970
   /// @param own_places whether places are frames of the drive itself
   /// @param map that places are of; null: none that lasts. Throws files::IoError.
-  void add(std::span<const Answer> answers, const FrameTimes& times, std::int64_t start_ns,
+  void add(std::span<const Answer> answers, const FrameTimes& times, const StampAt& stamp_ns,
            bool own_places, const LastingMap* map);
 
-  void add(std::span<const OtherLoop> loops, const FrameTimes& times, std::int64_t start_ns);
+  void add(std::span<const OtherLoop> loops, const FrameTimes& times, const StampAt& stamp_ns);
 
   /// Throws files::IoError.
   void commit();

@@ -3,11 +3,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 namespace seqloop::program {
+
+/// @param time_s of the drive's own clock
+/// @return what the clock of its pictures' headers said then, in nanoseconds since 1970; 0: not
+///   known any more. Of a topic, once a frame has come; then any thread may ask
+using StampAt = std::function<std::int64_t(double time_s)>;
 
 /// When each frame of a drive was taken, by its number. 16 bytes a frame.
 class FrameTimes {

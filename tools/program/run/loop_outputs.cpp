@@ -87,7 +87,7 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
 }
 
 void LoopOutputs::add(std::span<const Answer> answers) {
-  if (bag_) bag_->add(answers, times_, drive_.start_ns(), own_places_, drive_.map);
+  if (bag_) bag_->add(answers, times_, drive_.stamp_ns, own_places_, drive_.map);
   if (!graph_) return;
   for (const Answer& answer : answers) {
     if (!closes_loop(answer)) continue;
@@ -103,7 +103,7 @@ void LoopOutputs::add(std::span<const Answer> answers) {
 }
 
 void LoopOutputs::add(std::span<const OtherLoop> loops) {
-  if (bag_) bag_->add(loops, times_, drive_.start_ns());
+  if (bag_) bag_->add(loops, times_, drive_.stamp_ns);
   of_others_ += loops.size();
 }
 

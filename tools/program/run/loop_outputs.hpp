@@ -43,7 +43,8 @@ struct LoopDrive {
   std::filesystem::path source = {};
   const FrameSource* recording = nullptr;       ///< null: it comes live
   std::function<std::int64_t()> start_ns = {};  ///< as RunSetup's
-  std::size_t sequence = 1;                     ///< frames of a window: ds + 1
+  StampAt stamp_ns = {};
+  std::size_t sequence = 1;  ///< frames of a window: ds + 1
   /// Of a live drive: the odometry that has come; none where none is asked for.
   std::function<std::vector<ros::OdometryPose>()> odometry = {};
   const LastingMap* map = nullptr;  ///< that places are of; null: none that lasts

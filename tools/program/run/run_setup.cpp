@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -93,6 +94,7 @@ void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettin
                                     settings.real_time, clock);
       setup.live = std::move(opened.source);
       setup.start_ns = std::move(opened.start_ns);
+      setup.stamp_ns = std::move(opened.stamp_ns);
       return;
     }
     LiveCamera camera = open_camera(settings.source, settings.camera, drive.fps, *setup.describer,
@@ -178,10 +180,12 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   }
   refuse(std::move(faults));
   if (!setup.start_ns) {
-    setup.start_ns = [start = start_ns(setup.recording.get())] { return start; };
+    const std::int64_t start = start_ns(setup.recording.get());
+    setup.start_ns = [start] { return start; };
+    setup.stamp_ns = [start](double time_s) { return start + std::llround(time_s * 1e9); };
   }
   setup.loops->begin(settings.loops,
-                     {settings.source, setup.recording.get(), setup.start_ns,
+                     {settings.source, setup.recording.get(), setup.start_ns, setup.stamp_ns,
                       setup.config.sequence_length + 1, std::move(odometry), setup.map.get()});
   return setup;
 }

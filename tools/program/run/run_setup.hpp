@@ -63,7 +63,9 @@ struct RunSetup {
   std::unique_ptr<live::LiveSource> live;  ///< a camera, or the recording at its own pace
   std::string capture;                     ///< the camera and its mode; empty for others
   /// When the drive's second 0 was, in nanoseconds since 1970; of a topic, once a frame has come.
+  /// Where its clock was set back, by the clock as it is now.
   std::function<std::int64_t()> start_ns;
+  StampAt stamp_ns;
   std::unique_ptr<FrameSource> reference;  ///< none when loops are closed
   std::unique_ptr<LastingMap> map;         ///< none unless asked for
   std::unique_ptr<files::OutputFile> out;

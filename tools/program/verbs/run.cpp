@@ -118,7 +118,7 @@ void run(const RunSettings& settings, Faults faults) {
   const std::unique_ptr<Serving> serving = open_serving(settings, setup, conditions);
   std::unique_ptr<RosAnswers> ros;
   if (settings.ros) {
-    ros = std::make_unique<RosAnswers>(setup.ros, setup.start_ns, setup.own_places,
+    ros = std::make_unique<RosAnswers>(setup.ros, setup.stamp_ns, setup.own_places,
                                        setup.map ? setup.map->pictures() : nullptr);
   }
 

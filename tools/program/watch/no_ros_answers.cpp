@@ -6,9 +6,8 @@ namespace seqloop::program {
 
 class RosAnswers::Impl {};
 
-RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> /*participant*/,
-                       std::function<std::int64_t()> /*start_ns*/, bool /*own_places*/,
-                       std::unique_ptr<PlacePictures> /*pictures*/) {}
+RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> /*participant*/, StampAt /*stamp_ns*/,
+                       bool /*own_places*/, std::unique_ptr<PlacePictures> /*pictures*/) {}
 RosAnswers::~RosAnswers() = default;
 void RosAnswers::add_place(const Image& /*image*/, std::uint64_t /*number*/) {}
 void RosAnswers::keep_in(const LastingMap& /*map*/) {}

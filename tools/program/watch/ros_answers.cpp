@@ -39,11 +39,11 @@ std::string number(double value) { return fmt::format("{:.3g}", value); }
 
 class RosAnswers::Impl {
  public:
-  Impl(std::shared_ptr<dds::Participant> participant, std::function<std::int64_t()> start_ns,
-       bool own_places, std::unique_ptr<PlacePictures> pictures)
+  Impl(std::shared_ptr<dds::Participant> participant, StampAt stamp_ns, bool own_places,
+       std::unique_ptr<PlacePictures> pictures)
       : participant_(std::move(participant)),
         publisher_(*participant_),
-        ask_start_(std::move(start_ns)),
+        stamp_ns_(std::move(stamp_ns)),
         own_places_(own_places),
         saved_places_(std::move(pictures)),
         thread_([this] { follow(); }) {}
@@ -62,7 +62,6 @@ class RosAnswers::Impl {
   /// The loop's side.
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
                const MapState& map, Nanoseconds moment) noexcept {
-    start_ns_.store(ask_start_(), std::memory_order_relaxed);
     watch.publish(processed, state, summary, map, moment);
   }
 
@@ -108,7 +107,7 @@ class RosAnswers::Impl {
         [this, all](const OtherLoop& loop) {
           if (!all && !has_come(loop.answer)) return false;
           ++matches_;
-          count(publisher_.publish(closure_of(loop, times_, start_ns_)));
+          count(publisher_.publish(closure_of(loop, times_, stamp_ns_)));
           return true;
         });
   }
@@ -120,7 +119,7 @@ class RosAnswers::Impl {
 
   void send(const Answer& answer) {
     const ros::LoopClosure closure =
-        closure_of(answer, times_, start_ns_, own_places_, session_of(answer.match->place));
+        closure_of(answer, times_, stamp_ns_, own_places_, session_of(answer.match->place));
     ++matches_;
     count(publisher_.publish(closure));
     const SteadyTime now = std::chrono::steady_clock::now();
@@ -155,7 +154,7 @@ class RosAnswers::Impl {
     const FrameReport& report = newest_->frame.report;
     const auto at = [&](Gate gate) { return counts.at[static_cast<std::size_t>(gate)]; };
     ros::Status status;
-    status.stamp_ns = stamp_of(start_ns_, times_.newest_s());
+    status.stamp_ns = times_.all().empty() ? 0 : stamp_ns_(times_.newest_s());
     status.state = name(report.gate);
     status.frames = counts.frames;
     status.matches = matches_;
@@ -213,10 +212,9 @@ class RosAnswers::Impl {
 
   std::shared_ptr<dds::Participant> participant_;
   dds::Publisher publisher_;
-  std::function<std::int64_t()> ask_start_;
+  StampAt stamp_ns_;
   bool own_places_;
   std::unique_ptr<PlacePictures> saved_places_;
-  std::atomic<std::int64_t> start_ns_{0};
   std::atomic<std::uint64_t> dropped_{0};
 
   // The thread's.
@@ -232,10 +230,9 @@ class RosAnswers::Impl {
   std::thread thread_;
 };
 
-RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> participant,
-                       std::function<std::int64_t()> start_ns, bool own_places,
-                       std::unique_ptr<PlacePictures> pictures)
-    : impl_(std::make_unique<Impl>(std::move(participant), std::move(start_ns), own_places,
+RosAnswers::RosAnswers(std::shared_ptr<dds::Participant> participant, StampAt stamp_ns,
+                       bool own_places, std::unique_ptr<PlacePictures> pictures)
+    : impl_(std::make_unique<Impl>(std::move(participant), std::move(stamp_ns), own_places,
                                    std::move(pictures))) {}
 
 RosAnswers::~RosAnswers() = default;

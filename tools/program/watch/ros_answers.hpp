@@ -8,6 +8,7 @@
 
 #include "program/map/lasting_map.hpp"
 #include "program/map/place_pictures.hpp"
+#include "program/run/frame_times.hpp"
 #include "program/watch/watch.hpp"
 
 namespace seqloop::dds {
@@ -21,12 +22,12 @@ namespace seqloop::program {
 /// way, or is too much for the subscribers, is dropped and counted.
 class RosAnswers {
  public:
-  /// @param start_ns when the drive's second 0 was, since 1970; asked by the loop's thread
+  /// @param stamp_ns asked by the thread that sends, once a frame has come
   /// @param own_places whether places are frames of the drive itself
   /// @param pictures of a map's places; null: there are those that `add_place` brings
   /// Throws SetupError.
-  RosAnswers(std::shared_ptr<dds::Participant> participant, std::function<std::int64_t()> start_ns,
-             bool own_places, std::unique_ptr<PlacePictures> pictures);
+  RosAnswers(std::shared_ptr<dds::Participant> participant, StampAt stamp_ns, bool own_places,
+             std::unique_ptr<PlacePictures> pictures);
   RosAnswers(const RosAnswers&) = delete;
   RosAnswers& operator=(const RosAnswers&) = delete;
   RosAnswers(RosAnswers&&) = delete;

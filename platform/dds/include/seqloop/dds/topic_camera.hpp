@@ -56,6 +56,11 @@ class TopicCamera : public CaptureDevice {
     return start_ns_.load(std::memory_order_relaxed);
   }
 
+  /// What the headers said at a time, or would have: also before they went back. Any thread may
+  /// ask, and waits for nobody. @param time_ns since second 0
+  /// @return in nanoseconds since 1970; 0: not known any more, or nothing has come
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const noexcept;
+
   [[nodiscard]] const TopicCounters& counters() const noexcept { return counters_; }
 
  private:
