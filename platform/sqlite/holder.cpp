@@ -35,25 +35,42 @@ std::string holder_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-Holder::Holder(const std::filesystem::path& path)
-    : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666)) {
+Holder::Holder(const std::filesystem::path& path) {
   const std::string name = path.string();
-  if (descriptor_ < 0) {
-    throw SetupError(
-        {name, "cannot be opened to write: " + std::string(std::strerror(errno)),
-         errno == ENOSPC ? "make room" : "look at the rights of the file and its folder"});
-  }
-  struct stat status {};
-  const bool file = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
-  // A file system without locks has none for anybody else either.
-  const bool held = file && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (file && !held) return;
-  ::close(std::exchange(descriptor_, -1));
-  if (!file) throw SetupError({name, "is no file", "name a map, or one that is to become one"});
-  throw SetupError({name, holder_of(path), "wait until it ends, or only read (--read-only)"});
+  // Who made the file may remove it again before it is locked here.
+  do {
+    made_ = open(path, O_EXCL);
+    if (!made_ && !(errno == EEXIST && open(path, 0))) {
+      throw SetupError(
+          {name, "cannot be opened to write: " + std::string(std::strerror(errno)),
+           errno == ENOSPC ? "make room" : "look at the rights of the file and its folder"});
+    }
+    struct stat status {};
+    const bool file = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+    // A file system without locks has none for anybody else either.
+    const bool held = file && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (file && !held) continue;
+    ::close(std::exchange(descriptor_, -1));
+    if (!file) throw SetupError({name, "is no file", "name a map, or one that is to become one"});
+    throw SetupError({name, holder_of(path), "wait until it ends, or only read (--read-only)"});
+  } while (!is_at(path));
 }
 
-Holder::Holder(Holder&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+bool Holder::open(const std::filesystem::path& path, int more) noexcept {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | more, 0666);
+  return descriptor_ >= 0;
+}
+
+bool Holder::is_at(const std::filesystem::path& path) const noexcept {
+  struct stat own {};
+  struct stat there {};
+  return ::fstat(descriptor_, &own) == 0 && ::stat(path.c_str(), &there) == 0 &&
+         own.st_dev == there.st_dev && own.st_ino == there.st_ino;
+}
+
+Holder::Holder(Holder&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), made_(other.made_) {}
 
 Holder::~Holder() {
   if (descriptor_ >= 0) ::close(descriptor_);

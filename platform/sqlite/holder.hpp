@@ -22,8 +22,17 @@ class Holder {
   Holder& operator=(const Holder&) = delete;
   ~Holder();
 
+  /// Whether the file was not there before.
+  [[nodiscard]] bool made() const noexcept { return made_; }
+
+  /// Whether a path leads to the file that is held.
+  [[nodiscard]] bool is_at(const std::filesystem::path& path) const noexcept;
+
  private:
+  [[nodiscard]] bool open(const std::filesystem::path& path, int more) noexcept;
+
   int descriptor_ = -1;
+  bool made_ = false;
 };
 
 /// Writes down who this is, for whoever comes second.

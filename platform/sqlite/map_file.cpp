@@ -76,6 +76,10 @@ MapFile::State::~State() {
     database.execute("DELETE FROM holder");
     // One file without a log beside it, where nobody reads it just now.
     database.execute("PRAGMA journal_mode = DELETE");
+    if (drops && holder.made() && holder.is_at(path) &&
+        database.number("SELECT count(*) FROM session") == 0) {
+      ::unlink(path.c_str());
+    }
   } catch (const DatabaseError&) {  // the log stays and is read with the file
   }
 }
@@ -192,6 +196,7 @@ MapFile::MapFile(MapFile&&) noexcept = default;
 MapFile& MapFile::operator=(MapFile&&) noexcept = default;
 MapFile::~MapFile() = default;
 
+void MapFile::drop_if_unused() noexcept { state_->drops = true; }
 const fs::path& MapFile::path() const noexcept { return state_->path; }
 const MapForm& MapFile::form() const noexcept { return state_->form; }
 std::uint64_t MapFile::next_place() const {

@@ -36,6 +36,7 @@ struct MapFile::State {
   Holder holder;
   Database database;
   bool writes = false;
+  bool drops = false;
   MapForm form;
   Counts counts;
 

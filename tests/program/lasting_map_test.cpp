@@ -281,6 +281,16 @@ TEST_F(LastingMaps, APoseGraphHasTheDrivesOwnLoops) {
       << outcome.err;
 }
 
+TEST_F(LastingMaps, WhatIsRefusedMakesNoMap) {
+  for (const std::string words : {"match --query first.npy --out m.csv --ds 300",
+                                  "run --source first.npy --out l.jsonl --ds 300",
+                                  "run --source first.npy --out l.jsonl --max-places 4000000000"}) {
+    const test::Outcome refused = run(words + " --map new.seqloop");
+    EXPECT_EQ(refused.exit_code, 2) << refused.err;
+    EXPECT_EQ(listing().find("seqloop"), std::string::npos) << words << ": " << listing();
+  }
+}
+
 TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {
   expect_refused("run --source first.npy --map none.seqloop --read-only", "none.seqloop");
   EXPECT_FALSE(exists("none.seqloop"));

@@ -169,6 +169,9 @@ class Maps(unittest.TestCase):
             seqloop.PlaceMap.open(file, 0, -1)
         with self.assertRaisesRegex(seqloop.SetupError, "map"):
             self.open(file, read_only=True)
+        with self.assertRaisesRegex(seqloop.SetupError, "memory"):
+            self.open(file, max_places=4 * 10**9)
+        self.assertFalse(file.exists(), "nor where there is no room")
         self.match(file, "drive", "--session", "monday")
         with self.assertRaisesRegex(seqloop.SetupError, "has 200 places already"):
             self.open(file, max_places=100)

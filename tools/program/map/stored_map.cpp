@@ -39,7 +39,12 @@ sqlite::MapFile opened(const MapSettings& settings, const MatcherConfig& config,
   const PlaceMap one(config, {1, descriptor_size});
   const sqlite::MapForm form{form_of(config), std::move(describer), descriptor_size,
                              one.rows().saved_size()};
-  if (!settings.read_only) return sqlite::MapFile::open(settings.file, form);
+  if (!settings.read_only) {
+    sqlite::MapFile file = sqlite::MapFile::open(settings.file, form);
+    // Refused, a drive would leave a file that binds others to its form.
+    file.drop_if_unused();
+    return file;
+  }
   sqlite::MapFile file = sqlite::MapFile::read_only(settings.file);
   if (file.form() == form) return file;
   throw SetupError(

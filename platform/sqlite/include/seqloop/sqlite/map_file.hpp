@@ -147,6 +147,9 @@ class MapFile {
   MapFile& operator=(const MapFile&) = delete;
   ~MapFile();
 
+  /// A file that `open` made goes again if it has no session in the end.
+  void drop_if_unused() noexcept;
+
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const MapForm& form() const noexcept;
 
