@@ -56,7 +56,7 @@ class FollowedMap : public ::testing::Test {
         read_newest();  // what came since
       });
     }
-    map_->begin(*places_, config_, "test");
+    saving_ = map_->begin(*places_, config_, "test");
     Detector detector(config_, *places_);
     std::size_t full = 0;
     std::uint64_t frame = 0;
@@ -93,6 +93,7 @@ class FollowedMap : public ::testing::Test {
   MapSettings settings_;
   std::unique_ptr<LastingMap> map_;
   std::optional<PlaceMap> places_;
+  LastingMap::Saving saving_;
   bool at_once_ = true;
   std::atomic<bool> over_{false};
   std::thread follower_;

@@ -291,6 +291,17 @@ TEST_F(LastingMaps, WhatIsRefusedMakesNoMap) {
   }
 }
 
+TEST_F(LastingMaps, OfADriveThatCannotBeReadNothingStays) {
+  write("dark.npy", oracle::Vectors(100, std::vector<float>(40)));
+  expect_done("run --source first.npy --map old.seqloop --session one --out l.jsonl");
+  const auto before = nlohmann::json::parse(run("map info old.seqloop --json").out)["sessions"];
+  for (const std::string map : {"old.seqloop", "new.seqloop"}) {
+    expect_refused("run --source dark.npy --save-every-s 0.001 --map " + map, "can be read");
+  }
+  EXPECT_EQ(nlohmann::json::parse(run("map info old.seqloop --json").out)["sessions"], before);
+  EXPECT_FALSE(exists("new.seqloop"));
+}
+
 TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {
   expect_refused("run --source first.npy --map none.seqloop --read-only", "none.seqloop");
   EXPECT_FALSE(exists("none.seqloop"));

@@ -83,9 +83,11 @@ class Process {
 
 class MapProcess : public test::Program {
  protected:
-  void SetUp() override {
-    files::NpyWriter writer(file("drive.npy"), 40);
-    for (const auto& row : oracle::drive(1, frames, 40, 0.2F)) writer.append(row);
+  void SetUp() override { write_drive("drive.npy", frames, 40); }
+
+  void write_drive(const std::string& name, std::size_t rows, std::size_t values) const {
+    files::NpyWriter writer(file(name), values);
+    for (const auto& row : oracle::drive(1, rows, values, 0.2F)) writer.append(row);
     writer.commit();
   }
 
@@ -118,6 +120,20 @@ class MapProcess : public test::Program {
   [[nodiscard]] bool says(const std::string& name, const std::string& words) const {
     for (int n = 0; n < 6'000; ++n) {
       if (test::read_all(file(name)).find(words) != std::string::npos) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  }
+
+  /// Waits until a session of a map has frames. @return whether it ever had
+  [[nodiscard]] bool has_frames(const std::string& map, const std::string& session) const {
+    for (int n = 0; n < 6'000; ++n) {
+      try {
+        for (const auto& facts : sqlite::MapFile::read_only(file(map)).sessions()) {
+          if (facts.name == session && facts.frames > 0) return true;
+        }
+      } catch (const SetupError&) {  // it is not there yet
+      }
       std::this_thread::sleep_for(10ms);
     }
     return false;
@@ -236,6 +252,28 @@ class MapProcess : public test::Program {
 TEST_F(MapProcess, AKillLosesNothingThatWasAcknowledged) { kill_runs(1, kills / 2, 0); }
 
 TEST_F(MapProcess, AKillLeavesNoMorePlacesThanMayBe) { kill_runs(2, kills / 2, 150); }
+
+TEST_F(MapProcess, OfAnInterruptedMatchNothingStays) {
+  write_drive("long.npy", 30'000, 64);  // ten seconds of matching
+  write_drive("short.npy", 200, 64);
+  const std::string one = "match --query short.npy --session one --paper --out m.csv --map ";
+  ASSERT_EQ(run(one + "old.seqloop").exit_code, 0);
+  for (const char* map : {"old.seqloop", "new.seqloop"}) {
+    SCOPED_TRACE(map);
+    Process process({SEQLOOP_BINARY, "match", "--query", file("long.npy"), "--map", file(map),
+                     "--session", "two", "--save-every-s", "0.02", "--paper", "--method",
+                     "seqcnnslam", "--out", file("long.csv")},
+                    file("out"), file("err"));
+    ASSERT_TRUE(has_frames(map, "two")) << test::read_all(file("err"));
+    ::kill(process.pid(), SIGINT);
+    EXPECT_EQ(process.wait(), 1);
+    EXPECT_EQ(test::read_all(file("err")), "seqloop: interrupted: nothing has been written\n");
+  }
+  EXPECT_EQ(sessions("old.seqloop").size(), 1U);
+  for (const char* name : {"new.seqloop", "long.csv", "partial"}) {
+    EXPECT_EQ(listing().find(name), std::string::npos) << listing();
+  }
+}
 
 TEST_F(MapProcess, AFullDiskThatHasRoomAgainTakesWhatIsMissing) {
   const auto limit = [](pid_t pid, rlim_t soft) {

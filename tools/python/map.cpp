@@ -158,6 +158,7 @@ std::uint64_t Map::saved() {
 void Map::close() {
   const Unlocked unlocked;
   const std::scoped_lock lock(mutex_);
+  saving_.reset();
   file_.reset();
 }
 
@@ -171,7 +172,7 @@ void Map::claim() {
 }
 
 void Map::begin() {
-  if (file_) file_->begin(map_, config_, method_);
+  if (file_) saving_ = file_->begin(map_, config_, method_);
 }
 
 }  // namespace seqloop::python

@@ -79,7 +79,8 @@ class Map {
   bool in_file_;
   bool claimed_ = false;
   PlaceMap map_;
-  std::unique_ptr<program::LastingMap> file_;  // reads the map while it saves
+  std::unique_ptr<program::LastingMap> file_;
+  program::LastingMap::Saving saving_;  // reads the map
 };
 
 }  // namespace seqloop::python

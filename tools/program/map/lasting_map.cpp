@@ -115,14 +115,6 @@ class SqliteMap : public LastingMap {
     stored_.load(map);
   }
 
-  void begin(const PlaceMap& map, const MatcherConfig& config, const std::string& method) override {
-    map_ = &map;
-    if (stored_.read_only()) return;
-    stored_.begin_session(method);
-    writer_.emplace(stored_, map, config, settings_, encode_, learnt_);
-    followed_.store(&*writer_, std::memory_order_release);
-  }
-
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
             const Image& image, std::span<const Answer> answers) noexcept override {
     if (writer_) writer_->note(detector, counted, index, time_s, image, answers);
@@ -131,6 +123,12 @@ class SqliteMap : public LastingMap {
   [[nodiscard]] std::optional<std::string> finish(Detector& detector,
                                                   std::span<const Answer> rest) override {
     return writer_ ? writer_->finish(detector, rest) : std::nullopt;
+  }
+
+  void discard() override {
+    if (!writer_) return;
+    writer_->stop();
+    stored_.forget_session();
   }
 
   [[nodiscard]] std::optional<std::string> trouble() override {
@@ -201,6 +199,24 @@ class SqliteMap : public LastingMap {
   }
 
  private:
+  void start(const PlaceMap& map, const MatcherConfig& config, const std::string& method) override {
+    map_ = &map;
+    if (stored_.read_only()) return;
+    stored_.begin_session(method);
+    writer_.emplace(stored_, map, config, settings_, encode_, learnt_);
+    followed_.store(&*writer_, std::memory_order_release);
+  }
+
+  void end() noexcept override {
+    if (!writer_) return;
+    writer_->stop();
+    if (writer_->saved() > 0 || writer_->saved_places() > 0) return;
+    try {
+      stored_.forget_session();
+    } catch (const std::exception&) {  // a session of no frames is in nobody's way
+    }
+  }
+
   /// Adds the session of a place, and its frame there.
   void name_place(Json& json, const char* key) const {
     json["session"] = nullptr;

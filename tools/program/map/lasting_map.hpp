@@ -90,10 +90,20 @@ class LastingMap {
   /// they will be saved, whether or not the disk has them yet. For one thread, not the loop's.
   virtual void read_newest(const SavedPlaceReader& read) = 0;
 
+  /// Ends the saving.
+  struct Ending {
+    void operator()(LastingMap* map) const noexcept { map->end(); }
+  };
+  /// As long as it is there, what the drive adds is saved.
+  using Saving = std::unique_ptr<LastingMap, Ending>;
+
   /// The drive begins: from here on it is saved, unless the map is only read.
-  /// @param map the detector's, which lives longer. Throws SetupError.
-  virtual void begin(const PlaceMap& map, const MatcherConfig& config,
-                     const std::string& method) = 0;
+  /// @param map the detector's; it lives longer than what is returned. Throws SetupError.
+  [[nodiscard]] Saving begin(const PlaceMap& map, const MatcherConfig& config,
+                             const std::string& method) {
+    start(map, config, method);
+    return Saving(this);
+  }
 
   /// What the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
@@ -106,6 +116,10 @@ class LastingMap {
   /// @return why something could not be saved; nothing when all is
   [[nodiscard]] virtual std::optional<std::string> finish(Detector& detector,
                                                           std::span<const Answer> rest) = 0;
+
+  /// Instead of `finish`: nothing of the drive stays. Places that went for it are gone.
+  /// Throws std::runtime_error: something stays, since the disk does not take it.
+  virtual void discard() = 0;
 
   /// What there is to say of the disk, once. Never waits.
   [[nodiscard]] virtual std::optional<std::string> trouble() = 0;
@@ -146,6 +160,11 @@ class LastingMap {
 
   /// What was added, for a summary.
   [[nodiscard]] virtual std::string summary() const = 0;
+
+ private:
+  virtual void start(const PlaceMap& map, const MatcherConfig& config,
+                     const std::string& method) = 0;
+  virtual void end() noexcept = 0;
 };
 
 /// @param describer what describes the drive: only what was described alike can be compared

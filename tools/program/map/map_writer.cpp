@@ -64,7 +64,9 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
   thread_ = std::thread([this, every_s = settings.save_every_s] { work(every_s); });
 }
 
-MapWriter::~MapWriter() {
+MapWriter::~MapWriter() { stop(); }
+
+void MapWriter::stop() {
   if (!thread_.joinable()) return;
   {
     const std::scoped_lock lock(mutex_);
@@ -335,12 +337,7 @@ void MapWriter::read_newest(const SavedPlaceReader& read) {
 }
 
 std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const Answer> rest) {
-  {
-    const std::scoped_lock lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  stop();
   if (thumbnails_) thumbnails_->finish();
   weigh(rest);
   settle(counted_);

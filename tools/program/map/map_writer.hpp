@@ -50,6 +50,9 @@ class MapWriter {
   /// @return why something could not be saved; nothing when all is
   [[nodiscard]] std::optional<std::string> finish(Detector& detector, std::span<const Answer> rest);
 
+  /// Saves what is noted so far, and no more from then on. The map may go after that.
+  void stop();
+
   /// Frames of the drive, from the first on, that are on the disk for good.
   [[nodiscard]] std::uint64_t saved() const noexcept {
     return saved_frames_.load(std::memory_order_acquire);

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "program/process/interruption.hpp"
@@ -143,6 +144,17 @@ void StoredMap::begin_session(const std::string& settings) {
   session_ = file_.begin_session(name, began, settings);
   names_.push_back(name);
   begun_.push_back(began);
+}
+
+void StoredMap::forget_session() {
+  const std::string& name = names_.back();
+  if (std::exchange(session_, 0) == 0) return;
+  try {
+    file_.forget(name);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}: a part of the drive stays, as session '{}': {}",
+                                         path().string(), name, error.what()));
+  }
 }
 
 PlaceForm StoredMap::form() const {

@@ -37,6 +37,9 @@ class StoredMap {
   /// @param settings the run's, as a text for who reads the file
   void begin_session(const std::string& settings);
 
+  /// Removes it from the file again, if it is there. Throws std::runtime_error: it stays.
+  void forget_session();
+
   [[nodiscard]] bool read_only() const noexcept { return read_only_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   [[nodiscard]] sqlite::MapFile& file() noexcept { return file_; }

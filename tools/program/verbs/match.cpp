@@ -109,9 +109,13 @@ void match(const MatchSettings& settings, Faults faults) {
   memory.wait();
   working_memory.wait();
   Detector detector(config, map, working_memory.span());
-  if (lasting) lasting->begin(map, config, settings.matcher.method);
+  const LastingMap::Saving saving =
+      lasting ? lasting->begin(map, config, settings.matcher.method) : nullptr;
   Progress progress("matching", query->rows);
-  MatchWatch watch{&progress, stop_if_interrupted};
+  MatchWatch watch{&progress, [&] {
+                     if (interrupted() && lasting) lasting->discard();
+                     stop_if_interrupted();
+                   }};
   std::optional<std::string> unsaved;
   if (lasting) {
     watch.report = [&](const FrameReport& report) {

@@ -161,7 +161,8 @@ void run(const RunSettings& settings, Faults faults) {
     });
   }
   // A thread that saves is no part of the loop.
-  if (setup.map) setup.map->begin(map, setup.config, settings.matcher.method);
+  const LastingMap::Saving saving =
+      setup.map ? setup.map->begin(map, setup.config, settings.matcher.method) : nullptr;
   if (setup.map && serving) serving->keep_in(*setup.map);
   if (setup.map && ros) ros->keep_in(*setup.map);
   become_real_time(settings.real_time);
@@ -240,8 +241,6 @@ void run(const RunSettings& settings, Faults faults) {
   const ThreadCost cost = since(warm);
   progress.done();
   const std::span<const Answer> rest = detector.finish();
-  if (fleet) fleet->finish(rest);
-  const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
   recorder.add(rest);
   summary.add(rest);
   tell_notes(settings.source, setup.recording ? *setup.recording : setup.source());
@@ -249,8 +248,11 @@ void run(const RunSettings& settings, Faults faults) {
   const bool none_readable =
       summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
   if (none_readable && setup.recording) {
+    if (setup.map) setup.map->discard();
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
+  if (fleet) fleet->finish(rest);
+  const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
   const std::span<const Answer> last = numbers.rename(rest);
   if (serving) serving->watch().publish(last);
   if (ros) ros->publish(last);
