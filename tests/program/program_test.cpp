@@ -465,6 +465,39 @@ TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60);
 }
 
+TEST_F(Run, EachOutputThatCanBeWrittenIs) {
+  oracle::Vectors laps = oracle::drive(6, 150, 20, 0.2F);
+  const oracle::Vectors second = oracle::drive(6, 150, 20, 0.3F);
+  laps.insert(laps.end(), second.begin(), second.end());
+  write_npy("laps.npy", laps);
+  folder_.write("o.tum", "0 0 0 0 0 0 0 1\n300 300 0 0 0 0 0 1\n");
+  std::filesystem::create_directories(file("drawn"));
+  std::filesystem::create_symlink("nowhere/at.png", file("drawn/difference_matrix.png"));
+  const std::string others =
+      "run --source laps.npy --fps 1 --odometry o.tum --pose-graph g.g2o --trajectory t.tum "
+      "--out-bag b.mcap --pictures drawn ";
+  const test::Outcome outcome = run(others + "--out l.jsonl --summary /dev/full");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  for (const char* words : {"/dev/full: cannot be ", "difference_matrix.png: is a link"}) {
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(lines("l.jsonl").size(), 300U);
+  for (const char* name : {"b.mcap", "g.g2o", "t.tum"}) {
+    EXPECT_TRUE(std::filesystem::remove(file(name))) << name;
+  }
+  EXPECT_EQ(run(others + "--out /dev/full").exit_code, 1);
+  for (const char* name : {"b.mcap", "g.g2o", "t.tum"}) EXPECT_TRUE(exists(name)) << name;
+}
+
+TEST_F(Run, PicturesOfWhichOneIsAFolderAreRefusedBeforeAnyWork) {
+  write_npy("drive.npy", oracle::drive(6, 150, 20, 0.2F));
+  std::filesystem::create_directories(file("drawn/matches.png"));
+  const test::Outcome outcome = run("run --source drive.npy --out l.jsonl --pictures drawn");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("drawn/matches.png: is a folder"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(exists("l.jsonl"));
+}
+
 TEST_F(Run, NeverReplacesWhatALinkOfTheSystemLeadsTo) {
   // As root, renaming over /dev/stdout would take the whole machine's standard output away.
   write_npy("q.npy", oracle::drive(5, 60, 20));

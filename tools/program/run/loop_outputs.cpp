@@ -10,6 +10,22 @@
 
 namespace seqloop::program {
 
+namespace {
+
+/// Adds to an output. What could not be added is missing in it: it is given up.
+template <class Output, class Part>
+void add_to(std::unique_ptr<Output>& output, Part part) {
+  if (!output) return;
+  try {
+    part(*output);
+  } catch (...) {
+    output.reset();
+    throw;
+  }
+}
+
+}  // namespace
+
 void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings) {
   options.path("out-bag", Access::writes, settings.bag,
                "accepted loop closures as a bag of ROS 2 (.mcap) [none]");
@@ -87,8 +103,13 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
 }
 
 void LoopOutputs::add(std::span<const Answer> answers) {
-  if (bag_) bag_->add(answers, times_, drive_.stamp_ns, own_places_, drive_.map);
-  if (!graph_) return;
+  if (graph_) add_to_graph(answers);
+  add_to(bag_, [&](ClosuresBag& bag) {
+    bag.add(answers, times_, drive_.stamp_ns, own_places_, drive_.map);
+  });
+}
+
+void LoopOutputs::add_to_graph(std::span<const Answer> answers) {
   for (const Answer& answer : answers) {
     if (!closes_loop(answer)) continue;
     const auto frame = frame_of(answer.match->place);
@@ -103,8 +124,8 @@ void LoopOutputs::add(std::span<const Answer> answers) {
 }
 
 void LoopOutputs::add(std::span<const OtherLoop> loops) {
-  if (bag_) bag_->add(loops, times_, drive_.stamp_ns);
   of_others_ += loops.size();
+  add_to(bag_, [&](ClosuresBag& bag) { bag.add(loops, times_, drive_.stamp_ns); });
 }
 
 /// @return the drive's frame that a place is; nothing where it is of another drive
@@ -116,11 +137,13 @@ std::optional<std::uint64_t> LoopOutputs::frame_of(std::uint64_t place) const {
 
 void LoopOutputs::end() {
   if (topic_.empty()) return;
-  const std::int64_t start = drive_.start_ns();
-  graph_->begin(odometry_of(drive_.odometry(), topic_, start, SetBack::begins_anew),
+  add_to(graph_, [&](PoseGraph& graph) {
+    const std::int64_t start = drive_.start_ns();
+    graph.begin(odometry_of(drive_.odometry(), topic_, start, SetBack::begins_anew),
                 static_cast<double>(start) * 1e-9, drive_.sequence);
-  for (const auto& [frame, time_s] : times_.all()) graph_->add(frame, time_s);
-  graph_->add(loops_);
+    for (const auto& [frame, time_s] : times_.all()) graph.add(frame, time_s);
+    graph.add(loops_);
+  });
 }
 
 std::vector<std::string> LoopOutputs::notes() const {
@@ -136,9 +159,9 @@ std::vector<std::string> LoopOutputs::notes() const {
   return lines;
 }
 
-void LoopOutputs::commit() {
-  if (bag_) bag_->commit();
-  if (graph_) graph_->commit();
+void LoopOutputs::commit(Attempts& attempt) {
+  if (bag_) attempt([this] { bag_->commit(); });
+  if (graph_) graph_->commit(attempt);
 }
 
 }  // namespace seqloop::program

@@ -12,6 +12,7 @@
 
 #include "program/map/lasting_map.hpp"
 #include "program/options/options.hpp"
+#include "program/process/attempts.hpp"
 #include "program/run/closures_bag.hpp"
 #include "program/run/frame_times.hpp"
 #include "program/run/other_loop.hpp"
@@ -61,19 +62,23 @@ class LoopOutputs {
   /// Reads the odometry of a recording. Throws SetupError.
   void begin(const LoopOutputSettings& settings, LoopDrive drive);
 
-  /// Throw files::IoError.
+  /// Throw files::IoError; the others go on without the output that failed.
   void add(const ProcessedFrame& processed);
   void add(std::span<const Answer> answers);
   void add(std::span<const OtherLoop> loops);
-  void commit();
 
-  /// All answers are there: takes the odometry that has come meanwhile. Throws SetupError.
+  /// All answers are there: takes the odometry that has come meanwhile. Throws SetupError, and goes
+  /// on without a pose graph.
   void end();
+
+  /// Completes each of the outputs that have not failed.
+  void commit(Attempts& attempt);
 
   /// What a person should know, one line each; complete after `end`.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
+  void add_to_graph(std::span<const Answer> answers);
   [[nodiscard]] std::optional<std::uint64_t> frame_of(std::uint64_t place) const;
 
   bool own_places_;

@@ -136,7 +136,7 @@ bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>&
     cv::hconcat(pairs[i], right, row);
     sheet.push_back(row);
   }
-  write_png(folder / "matches.png", sheet);
+  write_png(folder / sheet_name, sheet);
   return true;
 }
 
@@ -207,7 +207,7 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
   write_text(picture,
              fmt::format("places over frames; dark: alike; red: {} matches", matches_.size()),
              {margin, margin / 2 - 12});
-  write_png(folder / "difference_matrix.png", picture);
+  write_png(folder / matrix_name, picture);
 }
 
 /// Up to ten matches, evenly over the drive.

@@ -16,6 +16,10 @@
 
 namespace seqloop::program {
 
+/// What comes into the folder of pictures.
+inline constexpr const char* matrix_name = "difference_matrix.png";
+inline constexpr const char* sheet_name = "matches.png";
+
 /// Keeps what pictures of a run need, while it runs: at most 1,000 descriptors, thinned out evenly
 /// as the drive grows, and the accepted answers.
 class PictureRecorder {

@@ -105,13 +105,17 @@ std::vector<std::string> PoseGraph::notes() const {
   return lines;
 }
 
-void PoseGraph::commit() {
-  if (vertices_.empty())
-    throw SetupError({"odometry", "no frame of the drive lies within its times",
-                      "its times must be those of the drive: a bag's stamps, or seconds from its "
-                      "first frame"});
-  if (graph_) write_graph();
-  if (trajectory_) write_trajectory();
+void PoseGraph::commit(Attempts& attempt) {
+  if (vertices_.empty()) {
+    attempt([] {
+      throw SetupError({"odometry", "no frame of the drive lies within its times",
+                        "its times must be those of the drive: a bag's stamps, or seconds from its "
+                        "first frame"});
+    });
+    return;
+  }
+  if (graph_) attempt([this] { write_graph(); });
+  if (trajectory_) attempt([this] { write_trajectory(); });
 }
 
 const PoseGraph::Vertex* PoseGraph::vertex(std::uint64_t frame) const noexcept {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "program/process/attempts.hpp"
 #include "program/run/odometry.hpp"
 #include "program/run/pose.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -37,8 +38,8 @@ class PoseGraph {
   /// What a person should know, one line each; complete before `commit`.
   [[nodiscard]] std::vector<std::string> notes() const;
 
-  /// Writes what is wanted. Throws files::IoError, and SetupError where no frame has a pose.
-  void commit();
+  /// Writes each of the files that are wanted. Fails where no frame has a pose.
+  void commit(Attempts& attempt);
 
  private:
   struct Vertex {

@@ -17,6 +17,7 @@
 #include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
+#include "program/run/pictures.hpp"
 #include "seqloop/linux/recording_capture.hpp"
 
 namespace seqloop::program {
@@ -68,7 +69,15 @@ void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) 
   if (!settings.summary.empty()) {
     collect(faults, [&] { setup.summary = std::make_unique<files::OutputFile>(settings.summary); });
   }
-  if (!settings.pictures.empty()) check_folder(faults, settings.pictures);
+  if (settings.pictures.empty()) return;
+  check_folder(faults, settings.pictures);
+  for (const char* name : {matrix_name, sheet_name}) {
+    const std::filesystem::path picture = settings.pictures / name;
+    std::error_code error;
+    if (!std::filesystem::is_directory(picture, error)) continue;
+    faults.push_back({picture.string(), "is a folder, and a picture is to have this name",
+                      "remove it, or choose another folder for the pictures"});
+  }
 }
 
 bool is_live(const std::filesystem::path& source) { return is_camera(source) || is_topic(source); }

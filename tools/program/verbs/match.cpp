@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "program/drives/drives.hpp"
@@ -14,6 +13,7 @@
 #include "program/drives/match_drive.hpp"
 #include "program/map/lasting_map.hpp"
 #include "program/options/matcher_settings.hpp"
+#include "program/process/attempts.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
@@ -125,15 +125,21 @@ void match(const MatchSettings& settings, Faults faults) {
     watch.rest = [&](std::span<const Answer> rest) { unsaved = lasting->finish(detector, rest); };
   }
   const MatchedDrive matched = match_frames(detector, config, *query, watch);
-  out->write(
-      "query,match,score,uniqueness,velocity,head,candidates,k,distances,probability,accepted\n");
-  for (const MatchedFrame& frame : matched.frames) out->write(csv_row(frame));
-  out->commit();
+  Attempts attempt;
+  const bool written = attempt([&] {
+    out->write(
+        "query,match,score,uniqueness,velocity,head,candidates,k,distances,probability,accepted\n");
+    for (const MatchedFrame& frame : matched.frames) out->write(csv_row(frame));
+    out->commit();
+  });
   tell_blank(settings.query, matched.blank_frames, query->rows);
-  say("{} of {} frames answered, {} of them accepted, in {}", matched.frames.size(), query->rows,
-      matched.accepted(), settings.out.string());
+  if (written) {
+    say("{} of {} frames answered, {} of them accepted, in {}", matched.frames.size(), query->rows,
+        matched.accepted(), settings.out.string());
+  }
   if (lasting) say("{}: {}", settings.map.file.string(), lasting->summary());
-  if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
+  if (unsaved) attempt.fail("not all of the drive is saved: " + *unsaved);
+  attempt.end();
 }
 
 }  // namespace

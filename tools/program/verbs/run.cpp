@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <exception>
 #include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +15,7 @@
 #include "program/drives/warm_up.hpp"
 #include "program/fleet/fleet.hpp"
 #include "program/options/verb.hpp"
+#include "program/process/attempts.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
 #include "program/process/progress.hpp"
@@ -41,19 +40,22 @@ namespace {
 
 /// @param lasting the map of the run; null: it ends with it
 void write_pictures(const RunSettings& settings, const PictureRecorder& recorder,
-                    const PlaceMap& map, const LastingMap* lasting) {
+                    const PlaceMap& map, const LastingMap* lasting, Attempts& attempt) {
   const auto reopen = [&](const std::filesystem::path& path) {
     return [&settings, path] { return open_drive(path, "source", settings.drive); };
   };
-  recorder.write_matrix(settings.pictures, map);
-  const bool pairs =
-      lasting != nullptr
-          ? recorder.write_pairs(settings.pictures, reopen(settings.source), *lasting)
-          : recorder.write_pairs(
-                settings.pictures, reopen(settings.source),
-                reopen(settings.reference.empty() ? settings.source : settings.reference));
-  say("pictures in {}: difference_matrix.png{}", settings.pictures.string(),
-      pairs ? ", matches.png" : "; no matched pictures to show side by side");
+  const bool matrix = attempt([&] { recorder.write_matrix(settings.pictures, map); });
+  bool pairs = false;
+  const bool looked = attempt([&] {
+    pairs = lasting != nullptr
+                ? recorder.write_pairs(settings.pictures, reopen(settings.source), *lasting)
+                : recorder.write_pairs(
+                      settings.pictures, reopen(settings.source),
+                      reopen(settings.reference.empty() ? settings.source : settings.reference));
+  });
+  if (!matrix || !looked) return;
+  say("pictures in {}: {}{}", settings.pictures.string(), matrix_name,
+      pairs ? fmt::format(", {}", sheet_name) : "; no matched pictures to show side by side");
 }
 
 ThreadCost since(const live::ThreadCounters& before) {
@@ -180,14 +182,8 @@ void run(const RunSettings& settings, Faults faults) {
   std::uint64_t blank_frames = 0;
   bool map_full = false;
   bool given_up = false;
-  std::exception_ptr unwritten;
-  const auto attempt = [&unwritten](auto write) {
-    try {
-      write();
-    } catch (const files::IoError&) {
-      unwritten = std::current_exception();
-    }
-  };
+  Attempts attempt;
+  bool lines_whole = true;
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
     if (serving && !heed(serving->watch().wishes, detector, clock)) break;
     std::optional<ProcessedFrame> processed = pipeline.process();
@@ -217,10 +213,10 @@ void run(const RunSettings& settings, Faults faults) {
     if (fleet && ros) ros->publish(fleet->loops());
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
-    attempt([&] { lines.add(*processed, state); });
+    lines_whole = attempt([&] { lines.add(*processed, state); });
     attempt([&] { setup.loops->add(*processed); });
     if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });
-    if (unwritten) break;
+    if (!lines_whole) break;
     trouble.tell(*processed, clock.now());
     if (processed->report.gate == Gate::no_frame) {
       given_up = settings.give_up_s > 0.0 &&
@@ -252,14 +248,15 @@ void run(const RunSettings& settings, Faults faults) {
     throw SetupError({settings.source.string(), "none of its frames can be read"});
   }
   if (fleet) fleet->finish(rest);
-  const auto unsaved = setup.map ? setup.map->finish(detector, rest) : std::nullopt;
+  std::optional<std::string> unsaved;
+  if (setup.map) attempt([&] { unsaved = setup.map->finish(detector, rest); });
   const std::span<const Answer> last = numbers.rename(rest);
   if (serving) serving->watch().publish(last);
   if (ros) ros->publish(last);
   if (fleet && serving) serving->watch().publish(fleet->loops());
   if (fleet && ros) ros->publish(fleet->loops());
   // The answers first: a driver that hangs may keep the capture thread from ending.
-  if (!unwritten) attempt([&] { lines.end(last); });
+  lines_whole = lines_whole && attempt([&] { lines.end(last); });
   attempt([&] { setup.loops->add(last); });
   if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });
   if (fleet) {
@@ -270,8 +267,8 @@ void run(const RunSettings& settings, Faults faults) {
   if (const std::uint64_t unsent = ros ? ros->end() : 0; unsent > 0) {
     say("{} messages to ROS 2 were dropped: subscribers, or this machine, were too slow", unsent);
   }
-  if (!unwritten) {
-    setup.out->commit();
+  if (lines_whole) {
+    attempt([&] { setup.out->commit(); });
   } else if (const auto kept = setup.out->keep_incomplete(); !kept.empty()) {
     say("what was written before is in {}", kept.string());
   }
@@ -282,28 +279,28 @@ void run(const RunSettings& settings, Faults faults) {
   if (setup.summary) {
     conditions.overloads = overload.episodes();
     conditions.cost = cost;
-    setup.summary->write(run_report(summary, conditions));
-    setup.summary->commit();
+    attempt([&] {
+      setup.summary->write(run_report(summary, conditions));
+      setup.summary->commit();
+    });
   }
-  if (!settings.pictures.empty() && !unwritten) {
-    write_pictures(settings, recorder, map, setup.map.get());
+  if (!settings.pictures.empty()) {
+    write_pictures(settings, recorder, map, setup.map.get(), attempt);
   }
   say_raw("seqloop: " + summary.text());
-  if (!unwritten) {
-    setup.loops->end();
-    for (const std::string& note : setup.loops->notes()) say("{}", note);
-    setup.loops->commit();
-  }
+  attempt([&] { setup.loops->end(); });
+  for (const std::string& note : setup.loops->notes()) say("{}", note);
+  setup.loops->commit(attempt);
   if (setup.map && !unsaved) {
     while (const auto news = setup.map->trouble()) say("{}", *news);
   }
   if (setup.map) say("{}: {}", settings.map.file.string(), setup.map->summary());
-  if (unwritten) std::rethrow_exception(unwritten);
-  if (unsaved) throw std::runtime_error("not all of the drive is saved: " + *unsaved);
+  if (unsaved) attempt.fail("not all of the drive is saved: " + *unsaved);
   if (given_up) {
-    throw std::runtime_error(fmt::format("{}: no frame for {:g} seconds: given up",
-                                         settings.source.string(), settings.give_up_s));
+    attempt.fail(fmt::format("{}: no frame for {:g} seconds: given up", settings.source.string(),
+                             settings.give_up_s));
   }
+  attempt.end();
 }
 
 }  // namespace seqloop::program

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "program/run/pictures.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "program/verbs/run.hpp"
 
@@ -53,7 +54,7 @@ Verb run_verb() {
                     "one JSON object a frame [standard output]");
   verb.options.path("summary", Access::writes, settings->summary,
                     "counts and latency histograms of the run, as JSON [none]");
-  verb.options.folder("pictures", settings->pictures, {"difference_matrix.png", "matches.png"},
+  verb.options.folder("pictures", settings->pictures, {matrix_name, sheet_name},
                       "folder for the difference matrix and a sheet of matched pairs [none]");
   add_loop_output_options(verb.options, settings->loops);
   verb.options.section("Task");
