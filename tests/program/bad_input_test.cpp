@@ -196,6 +196,20 @@ TEST_F(BadInput, CommandLines) {
   expect_refused("plan --max-places 0", {"places"});
 }
 
+TEST_F(BadInput, EmptyValues) {
+  const auto refused = [&](const std::string& words, const std::string& name) {
+    expect_refused(words, {name + ": its value is empty; give one, or leave it out\n"});
+  };
+  for (const char* name : {"reference", "map", "out", "summary", "pictures", "out-bag", "odometry",
+                           "session", "topic", "method", "config"}) {
+    refused("run --source good.npy --" + std::string(name) + " ''", name);
+  }
+  refused("match --query good.npy --out ''", "out");
+  refused("eval --matches '' --truth identity", "matches");
+  folder_.write("c.toml", "reference = \"\"\n");
+  refused("run --source good.npy --config c.toml", "c.toml:1: 'reference'");
+}
+
 TEST_F(BadInput, Sources) {
   std::filesystem::create_directory(file("empty"));
   folder_.write("noise.mp4", "this is no video");

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -28,7 +29,7 @@ enum ExitCode : int { done = 0, failed_while_running = 1, bad_usage = 2 };
 /// What the command line says of one verb, as text.
 struct Given {
   std::vector<std::pair<const Option*, std::vector<std::string>>> values;
-  std::string config_file;
+  std::optional<std::string> config_file;
 };
 
 const char* value_name(ValueKind kind) {
@@ -154,14 +155,16 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
       faults.push_back(std::move(fault));
     }
   }
-  if (!given.config_file.empty()) {
+  if (given.config_file && given.config_file->empty()) {
+    faults.push_back(empty_value("config"));
+  } else if (given.config_file) {
     for (Fault& fault :
-         apply_config_file(given.config_file, verb.options, set_already, all_names)) {
+         apply_config_file(*given.config_file, verb.options, set_already, all_names)) {
       faults.push_back(std::move(fault));
     }
   }
   std::vector<FileUse> files = verb.options.files();
-  files.push_back({"config", Access::reads, given.config_file});
+  files.push_back({"config", Access::reads, given.config_file.value_or("")});
   refuse_overwriting(faults, files);
   return faults;
 }

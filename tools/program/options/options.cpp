@@ -161,7 +161,14 @@ const Option* OptionTable::find(std::string_view name) const noexcept {
   return found == options_.end() ? nullptr : &*found;
 }
 
+Fault empty_value(std::string name) {
+  return {std::move(name), "its value is empty", "give one, or leave it out"};
+}
+
 Faults OptionTable::set(const Option& option, std::string_view value) {
+  if (value.empty() && option.kind == ValueKind::text && !option.may_be_bare) {
+    return {empty_value(option.name)};
+  }
   try {
     option.set(value);
   } catch (const std::invalid_argument& why) {

@@ -82,6 +82,10 @@ class OptionTable {
 /// @return the name that is written most like this one, when one is near enough to be meant
 [[nodiscard]] std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
+/// Most often a variable of a script is not set: to go on as if nothing was asked for would lose
+/// what was. @param name of the option
+[[nodiscard]] Fault empty_value(std::string name);
+
 /// Numbers as C writes them, in any locale. Throw std::invalid_argument: why not.
 [[nodiscard]] std::size_t parse_count(std::string_view text);
 [[nodiscard]] double parse_number(std::string_view text);

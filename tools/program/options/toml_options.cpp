@@ -196,7 +196,7 @@ std::vector<WrittenOption> read_options(const toml::table& table, const std::str
 Faults set_written(const WrittenOption& written, const std::string& value) {
   Faults faults;
   for (const Fault& fault : OptionTable::set(*written.option, value)) {
-    faults.push_back({written.where, "'" + written.option->name + "': " + fault.why});
+    faults.push_back({written.where, "'" + written.option->name + "': " + fault.why, fault.remedy});
   }
   return faults;
 }
