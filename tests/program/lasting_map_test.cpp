@@ -308,6 +308,7 @@ TEST_F(LastingMaps, WhatDoesNotGoTogetherIsSaid) {
   expect_refused("run --source first.npy --read-only", "there is no map");
   expect_refused("run --source first.npy --map m.seqloop --reference other.npy", "two maps");
   expect_refused("run --source first.npy --map m.seqloop --save-every-s 0", "save-every-s");
+  expect_refused("run --source first.npy --map m.seqloop --session 'caf\xe9'", "session: its name");
   expect_refused("match --query first.npy --map first.npy --out m.csv", "first.npy");
   expect_done("match --query first.npy --map m.seqloop --session one --out m.csv");
   expect_refused("match --query again.npy --map m.seqloop --session one --out m.csv", "'one'");

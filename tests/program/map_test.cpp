@@ -155,6 +155,14 @@ TEST_F(MapVerb, ForgetAndCompactMakeItSmaller) {
   EXPECT_EQ(listing(), "a ");
 }
 
+TEST_F(MapVerb, SessionsWhoseNamesAreNoUtf8AreExportedAndImported) {
+  MapFile::open(file("a"), test::sample_form()).begin_session("caf\xe9", 3, "\xff");
+  expect(0, "info a --json", "caf\xef\xbf\xbd");
+  expect(0, "export a --out folder", "folder: 0 places in 1 session");
+  expect(0, "import folder --out b", "b: 0 places in 1 session");
+  EXPECT_EQ(MapFile::read_only(file("b")).sessions().front().name, "caf\xef\xbf\xbd");
+}
+
 TEST_F(MapVerb, SaysHowItIsUsed) {
   EXPECT_NE(run("map --help").out.find("seqloop map recover DAMAGED NEW"), std::string::npos);
   expect_refused("", "what is to be done with it?");

@@ -10,10 +10,12 @@ import resource
 import shutil
 import signal
 import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 import numpy
 
@@ -207,6 +209,23 @@ class Maps(unittest.TestCase):
         for call in (seqloop.map_info, seqloop.check_map):
             with self.assertRaisesRegex(seqloop.SetupError, "drive.npy"):
                 call(self.work / "drive.npy")
+
+    def test_names_that_are_no_utf8_are_read(self) -> None:
+        file = self.work / "map.seqloop"
+        self.match(file, "drive", "--session", "cafe")
+        # As a keeper may have it of a robot.
+        with sqlite3.connect(file) as map:
+            *values, _ = map.execute("SELECT * FROM session").fetchone()
+            values[1] = b"caf\xe9"
+            row = b"session"
+            for value in values:
+                text = value.encode() if isinstance(value, str) else value
+                row += struct.pack("<q", value) if isinstance(value, int) else struct.pack("<q", len(text)) + text
+            map.execute("UPDATE session SET name = CAST(? AS TEXT), checksum = ?", (values[1], zlib.crc32(row)))
+        self.assertEqual(seqloop.check_map(file), [])
+        self.assertEqual(seqloop.map_info(file).sessions[0].name, "caf\ufffd")
+        with self.open(file, read_only=True) as places:
+            self.assertEqual(places.where(7), ("caf\ufffd", 7))
 
     def test_a_full_disk_is_told_and_tried_again(self) -> None:
         file = self.work / "map.seqloop"

@@ -112,6 +112,13 @@ py::dict described(const OptionTable& options) {
   return all;
 }
 
+py::str readable(std::string_view text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 void translate_faults(const py::object& error) {
   static py::object* const type = new py::object(error);  // as long as the process lives
   py::register_local_exception_translator([](std::exception_ptr thrown) {

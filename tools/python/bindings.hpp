@@ -9,6 +9,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "program/options/options.hpp"
@@ -36,6 +37,9 @@ template <class Settings>
   add(options, settings);
   return described(options);
 }
+
+/// Text of a file, in which what is no UTF-8 becomes U+FFFD.
+[[nodiscard]] pybind11::str readable(std::string_view text);
 
 /// From now on SetupError arrives in Python as `error`, of which `faults` holds a tuple
 /// (what, why, remedy) for each fault, flags spelt as keyword arguments.

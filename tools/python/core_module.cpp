@@ -187,9 +187,15 @@ PYBIND11_MODULE(_core, module) {
           "'novel', places that later laps have seen often enough go, or 'all' stay.\n"
           "settings: as seqloop.settings() lists them.\n"
           "Errors: SetupError: held by another process, of another form, damaged, no space, …")
-      .def("where", &Map::where, py::arg("place"),
-           "(session, frame) where a place of a map in a file was seen; the frame is None once\n"
-           "the place is forgotten. Errors: SetupError.")
+      .def(
+          "where",
+          [](Map& map, std::uint64_t place) {
+            const auto [session, frame] = map.where(place);
+            return std::pair(seqloop::python::readable(session), frame);
+          },
+          py::arg("place"),
+          "(session, frame) where a place of a map in a file was seen; the frame is None once\n"
+          "the place is forgotten. Errors: SetupError.")
       .def_property_readonly("saved", &Map::saved,
                              "Frames of this drive, from the first on, that are on the disk for\n"
                              "good. Errors: SetupError where the map is in no file.")

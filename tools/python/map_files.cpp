@@ -25,17 +25,22 @@ py::dict info(const std::filesystem::path& file) {
   using namespace py::literals;
   py::list sessions;
   for (const sqlite::SessionFacts& session : map.sessions()) {
-    sessions.append(py::dict("name"_a = session.name, "places"_a = session.places,
+    sessions.append(py::dict("name"_a = readable(session.name), "places"_a = session.places,
                              "frames"_a = session.frames, "began_ns"_a = session.began_ns,
-                             "settings"_a = session.settings));
+                             "settings"_a = readable(session.settings)));
   }
-  return py::dict("descriptor_size"_a = form.descriptor_size, "form"_a = form.form,
-                  "describer"_a = form.describer, "sessions"_a = sessions);
+  return py::dict("descriptor_size"_a = form.descriptor_size, "form"_a = readable(form.form),
+                  "describer"_a = readable(form.describer), "sessions"_a = sessions);
 }
 
-std::vector<std::string> check(const std::filesystem::path& file) {
-  const Unlocked unlocked;
-  return sqlite::MapFile::read_only(file).check();
+py::list check(const std::filesystem::path& file) {
+  const std::vector<std::string> found = [&] {
+    const Unlocked unlocked;
+    return sqlite::MapFile::read_only(file).check();
+  }();
+  py::list wrong;
+  for (const std::string& what : found) wrong.append(readable(what));
+  return wrong;
 }
 
 std::vector<std::uint64_t> merge(const std::vector<std::filesystem::path>& maps,

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "program/process/utf8.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -49,6 +51,9 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
   if (enhance) {
     faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
                       "leave one of them out"});
+  }
+  if (!is_utf8(settings.robot)) {
+    faults.push_back({"robot", "its name is not UTF-8, as JSON wants it", "give it another"});
   }
   if (!(settings.kbps >= 0.0)) faults.push_back({"fleet-kbps", "it must be 0 (no limit) or more"});
   if (settings.places == 0 || settings.places > most_fleet_places) {

@@ -234,7 +234,8 @@ Keeper::Session& Keeper::session_in_file(std::uint32_t index) {
     name = fmt::format("{}-{}", title, more++);
   }
   const Json settings{{"robot", session.names.robot}, {"session", session.names.session}};
-  session.id = file_->begin_session(name, session.names.began_ns, settings.dump());
+  session.id = file_->begin_session(name, session.names.began_ns,
+                                    settings.dump(-1, ' ', false, Json::error_handler_t::replace));
   news_.push_back(fmt::format("what robot '{}' tells of session '{}' is kept as '{}'",
                               session.names.robot, session.names.session, name));
   heard_as_[index] = sessions_.size();

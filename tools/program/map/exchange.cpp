@@ -208,7 +208,8 @@ void export_map(const MapFile& map, const fs::path& folder) {
     numbers.emplace(facts.id, static_cast<std::int64_t>(numbers.size()) + 1);
     json["sessions"].push_back(described(map, facts));
   }
-  out.write("map.json", json.dump(2) + '\n');
+  // Names of sessions may be no UTF-8: a keeper takes them as robots tell them.
+  out.write("map.json", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 
   std::string table = std::string(places_header) + '\n';
   std::map<std::int64_t, std::pair<std::string, std::uint64_t>> open;  // bytes and rows

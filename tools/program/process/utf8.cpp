@@ -26,4 +26,13 @@ Character first_character(std::string_view text) noexcept {
   return {bytes, code};
 }
 
+bool is_utf8(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const std::size_t bytes = first_character(text).bytes;
+    if (bytes == 0) return false;
+    text.remove_prefix(bytes);
+  }
+  return true;
+}
+
 }  // namespace seqloop::program

@@ -15,4 +15,7 @@ struct Character {
 /// The first character of a text. Over-long forms and surrogates are none.
 [[nodiscard]] Character first_character(std::string_view text) noexcept;
 
+/// Whether all of a text is UTF-8.
+[[nodiscard]] bool is_utf8(std::string_view text) noexcept;
+
 }  // namespace seqloop::program
