@@ -163,6 +163,18 @@ TEST_F(MapVerb, SessionsWhoseNamesAreNoUtf8AreExportedAndImported) {
   EXPECT_EQ(MapFile::read_only(file("b")).sessions().front().name, "caf\xef\xbf\xbd");
 }
 
+TEST_F(MapVerb, NamesThatLookLikeFlagsStandBehindTwoDashes) {
+  {
+    MapFile map = MapFile::open(file("-a"), test::sample_form());
+    for (const char* session : {"-x", "--json", "--"}) map.begin_session(session, 3, "");
+  }
+  expect(0, "forget -- -a -x", "-a: 0 places in 2 sessions");
+  expect(0, "forget -- -a --json", "-a: 0 places in 1 session");
+  expect(0, "forget -- -a --", "-a: 0 places in 0 sessions");
+  expect(0, "info --json -- -a", "\"places\": 0");
+  EXPECT_EQ(run("plan -- -x").exit_code, 2);
+}
+
 TEST_F(MapVerb, SaysHowItIsUsed) {
   EXPECT_NE(run("map --help").out.find("seqloop map recover DAMAGED NEW"), std::string::npos);
   expect_refused("", "what is to be done with it?");

@@ -119,11 +119,14 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
 }
 
 /// Everything that the command line and the configuration file get wrong, at once.
+/// @param extras what is no flag of the verb, or no flag at all
+/// @param behind what is no flag, even where it looks like one
 Faults settle(const Verb& verb, const Given& given, const std::vector<std::string>& extras,
-              const std::vector<std::string>& all_names) {
+              const std::vector<std::string>& behind, const std::vector<std::string>& all_names) {
   Faults faults;
   std::vector<std::string> own_names{"config"};
   for (const Option& option : verb.options.options()) own_names.push_back(option.name);
+  const std::string help = "see seqloop " + verb.name + " --help";
   bool after_unknown_flag = false;
   std::vector<std::string> words;
   for (const std::string& extra : extras) {
@@ -137,13 +140,16 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
     }
     const std::string name = extra.substr(std::min(extra.find_first_not_of('-'), extra.size()));
     const std::string meant = nearest(name.substr(0, name.find('=')), own_names);
-    const std::string help = "see seqloop " + verb.name + " --help";
     if (!flag && meant.empty()) {
       faults.push_back({extra, "stands after no flag", "say what it is, as in --source; " + help});
     } else {
       faults.push_back({extra, "not known to '" + verb.name + "'",
                         meant.empty() ? help : "did you mean --" + meant + "?"});
     }
+  }
+  for (const std::string& word : behind) {
+    words.push_back(word);
+    if (!verb.words) faults.push_back({word, "stands after no flag", help});
   }
   if (verb.words) verb.words(std::move(words));
   std::set<std::string> set_already;
@@ -194,8 +200,10 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
                         meant.empty() ? "see seqloop --help" : "did you mean '" + meant + "'?"});
     }
   }
+  char** const end = std::find(argv, argv + argc, std::string_view("--"));
+  const std::vector<std::string> behind(std::min(end + 1, argv + argc), argv + argc);
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(end - argv), argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     say("command line: {}; see seqloop --help", error.what());
@@ -204,7 +212,7 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   for (std::size_t i = 0; i < verbs.size(); ++i) {
     const CLI::App* sub = app.get_subcommand(verbs[i].name);
     if (!sub->parsed()) continue;
-    verbs[i].run(settle(verbs[i], given[i], sub->remaining(), all_names));
+    verbs[i].run(settle(verbs[i], given[i], sub->remaining(), behind, all_names));
   }
   return done;
 }
