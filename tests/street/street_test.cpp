@@ -390,14 +390,14 @@ TEST(StreetOutput, OnlyCompleteFoldersOfOurOwnAreReplaced) {
     write_file(unfinished.folder() / "a", "1");
   }
   EXPECT_TRUE(fs::is_empty(scratch.path));
-  for (const std::string content : {"first", "second"}) {
+  for (const std::string content : {"near.csv", "truth.csv"}) {
     Staging staging(target);
     write_file(staging.folder() / content, content);
     EXPECT_FALSE(fs::exists(target / content));
     staging.commit("seed 1\n");
     EXPECT_TRUE(fs::exists(target / content));
   }
-  EXPECT_FALSE(fs::exists(target / "first"));
+  EXPECT_FALSE(fs::exists(target / "near.csv"));
   EXPECT_TRUE(Staging::holds(target, "seed 1\n"));
   EXPECT_FALSE(Staging::holds(target, "seed 2\n"));
   const fs::path foreign = scratch.path / "foreign";
@@ -406,6 +406,22 @@ TEST(StreetOutput, OnlyCompleteFoldersOfOurOwnAreReplaced) {
   EXPECT_THROW(Staging{foreign}, std::runtime_error);
   EXPECT_TRUE(fs::exists(foreign / "thesis.txt"));
   EXPECT_THROW(write_file(scratch.path / "no/such/folder", "x"), std::runtime_error);
+}
+
+TEST(StreetOutput, WhatOthersPutBesideADriveIsNotLost) {
+  const Scratch scratch;
+  const fs::path target = scratch.path / "made";
+  for (int i = 0; i < 2; ++i) {
+    Staging staging(target);
+    open_sink(staging.folder(), "query", Format::jpg, {32, 32})->put(cv::Mat(32, 32, CV_8UC3));
+    staging.commit("seed 1\n");
+  }
+  for (const char* name : {"answers.jsonl", "drive.npy", "query/notes.txt", "query/000001.npy"}) {
+    write_file(target / name, "mine");
+    EXPECT_THROW(Staging{target}, std::runtime_error) << name;
+    EXPECT_TRUE(fs::remove(target / name)) << name;
+  }
+  EXPECT_NO_THROW(Staging{target});
 }
 
 TEST(StreetOutput, ADiskWithoutRoomIsReported) {

@@ -95,6 +95,20 @@ std::string read_file(const fs::path& file) {
 
 constexpr const char* kFirstLine = "seqloop-street drive 1\n";
 
+/// Whether this program gives files such a name. @param name relative to the folder it makes
+bool is_ours(const fs::path& name) {
+  const std::string stem = name.stem();
+  const std::string ending = name.extension();
+  if (name.has_parent_path()) {
+    return (ending == ".jpg" || ending == ".png") &&
+           stem.find_first_not_of("0123456789") == std::string::npos;
+  }
+  if (stem == "reference" || stem == "query" || stem == "drive") {
+    return ending.empty() || ending == ".avi" || ending == ".csv";
+  }
+  return name == "truth.csv" || name == "near.csv" || name == Staging::kMarker;
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSink> open_sink(const fs::path& folder, const std::string& name, Format format,
@@ -142,6 +156,12 @@ Staging::Staging(fs::path target) : target_(std::move(target)) {
   const bool empty = fs::is_directory(target_) && fs::is_empty(target_);
   if (fs::exists(target_) && !empty && read_file(target_ / kMarker).rfind(kFirstLine, 0) != 0) {
     fail(target_, "exists and is not a drive made by seqloop-street");
+  }
+  if (fs::is_directory(target_)) {
+    for (const auto& entry : fs::recursive_directory_iterator(target_)) {
+      if (is_ours(entry.path().lexically_relative(target_))) continue;
+      fail(entry.path(), "would be lost with the drive that is replaced; move it elsewhere");
+    }
   }
   if (target_.has_parent_path()) fs::create_directories(target_.parent_path());
   for (int i = 0;; ++i) {

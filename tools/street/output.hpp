@@ -47,7 +47,8 @@ class Staging {
   /// Names the file that marks a folder as made here.
   static constexpr const char* kMarker = "street.txt";
 
-  /// @throws std::runtime_error when `target` exists and was not made by this program.
+  /// @throws std::runtime_error when `target` exists and was not made by this program, or holds
+  ///   what was not.
   explicit Staging(std::filesystem::path target);
   /// Removes what was not committed.
   ~Staging();
