@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The tools take a folder as it is named where they are called. Nothing is built: what they call
+# first is stood in for, and notes what they made of the name.
+# Usage: given_folders.sh SOURCE
+set -eu
+work=$(realpath "$(mktemp -d)")
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work/checkout/tools" "$work/bin" "$work/here"
+for tool in demo docs package cross tidy; do
+  cp "$1/tools/$tool" "$work/checkout/tools"
+done
+printf '#!/bin/sh\nexit 9\n' >"$work/bin/cmake"
+chmod +x "$work/bin/cmake"
+cp "$work/bin/cmake" "$work/checkout/tools/install-packages"
+cd "$work/here"
+for call in 'sh demo out' 'bash docs out' 'bash package out' 'bash cross aarch64 out' 'sh tidy out'; do
+  # shellcheck disable=SC2086 # a word each
+  set -- $call
+  shell=$1 tool=$2
+  shift 2
+  if PATH=$work/bin:$PATH $shell -x "../checkout/tools/$tool" "$@" >"$work/said" 2>&1 ||
+    ! grep -q "=$work/here/out\$" "$work/said"; then
+    cat "$work/said"
+    echo "tools/$tool $*, called in $work/here, does not take $work/here/out"
+    exit 1
+  fi
+done
