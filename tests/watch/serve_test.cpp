@@ -120,7 +120,9 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   };
   EXPECT_EQ(answered("/api/control", {{"do", "mark"}, {"name", "<door>"}}), "200");
   EXPECT_EQ(json(get("/api/marks"))[0]["name"], "<door>");
-  EXPECT_EQ(answered("/api/control", {{"do", "threshold"}, {"min_probability", 2}}), "400");
+  for (const double no : {2.0, 0.0, 1e-60}) {
+    EXPECT_EQ(answered("/api/control", {{"do", "threshold"}, {"min_probability", no}}), "400");
+  }
   EXPECT_EQ(answered("/api/control", {{"do", 7}}), "400");
   EXPECT_EQ(answered("/api/control", {{"do", "save"}}), "409") << "there is no map in a file";
   EXPECT_EQ(answered("/api/control", Json::array()), "400");

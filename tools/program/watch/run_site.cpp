@@ -275,13 +275,15 @@ http::Reply RunSite::set_threshold(const Json& wish) {
   const Json run = view_.status()["run"];
   if (run.value("/decision/by"_json_pointer, "") != "probability")
     return fault(409, "this run does not decide by probability");
-  const double least = wish.contains("min_probability") && wish["min_probability"].is_number()
-                           ? wish["min_probability"].get<double>()
-                           : 0.0;
-  if (!(least > 0.0 && least <= 1.0))
+  const double wanted = wish.contains("min_probability") && wish["min_probability"].is_number()
+                            ? wish["min_probability"].get<double>()
+                            : 0.0;
+  // What the loop is told: there, 0 is no wish.
+  const auto least = static_cast<float>(wanted);
+  if (!(least > 0.0F && wanted <= 1.0))
     return fault(400, "min_probability is above 0, and 1 at most");
-  watch_->wishes.min_probability.store(static_cast<float>(least), std::memory_order_relaxed);
-  return json_reply({{"min_probability", least}});
+  watch_->wishes.min_probability.store(least, std::memory_order_relaxed);
+  return json_reply({{"min_probability", wanted}});
 }
 
 http::Reply RunSite::control(const Json& wish) {
