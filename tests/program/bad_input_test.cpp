@@ -464,6 +464,8 @@ TEST_F(BadInput, Cameras) {
   expect_refused("camera --device . --frames 1", {"a folder, no camera"});
   expect_refused("camera --frames 0", {"frames"});
   expect_refused("camera --format H264 --size 640 --fps 0", {"format", "size", "fps"});
+  expect_refused("run --source good.npy --format MJPG --size 320x240 --give-up-s 3",
+                 {"format: it goes with a camera", "size: it goes", "give-up-s: it goes"});
 }
 
 }  // namespace

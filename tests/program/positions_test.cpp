@@ -59,6 +59,8 @@ TEST_F(EvalByPositions, EveryFaultAtOnce) {
   expect_refused("--query-positions q.csv", {"reference-positions: not given"});
   expect_refused("--truth identity " + both_, {"leave one of them out"});
   expect_refused("--radius 3", {"radius", "--reference-positions"});
+  expect_refused("--tolerance 2 " + both_, {"tolerance: it counts frames"});
+  expect_refused("--jobs 2", {"jobs: it goes with an experiment"});
   expect_refused("--radius -3 " + both_, {"above 0"});
   expect_refused("--radius nan " + both_, {"'nan'"});
   expect_refused("--radius 0.001 " + both_, {"no query frame"});

@@ -122,7 +122,7 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
   const program::JudgedBy judge = judge_by(settings, std::move(known), frames, answers, faults);
   program::refuse(std::move(faults));
   const evaluation::Measures measures =
-      measure(std::move(answers), judge.truth, settings.tolerance, judge.frames);
+      measure(std::move(answers), judge.truth, tolerance(settings), judge.frames);
   std::vector<double> curve;
   for (const evaluation::CurvePoint& point : measures.curve) {
     curve.push_back(point.recall);

@@ -227,7 +227,7 @@ class Runner {
                   described.query.columns};
     const MatchedRun matched =
         match_pair(run.config, std::move(described), run.threshold_on, shown_as_matrix(run));
-    result.measures = measure(matched.answers, truth, pair.truth.tolerance, truth.frames());
+    result.measures = measure(matched.answers, truth, tolerance(pair.truth), truth.frames());
     result.distances = matched.distances;
     result.most_distances = matched.most_distances;
     result.candidates = matched.candidates;

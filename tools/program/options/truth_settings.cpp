@@ -44,6 +44,9 @@ evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) 
   if (!settings.file.empty()) {
     faults.push_back({"truth", "positions are given too", "leave one of them out"});
   }
+  if (settings.tolerance) {
+    faults.push_back({"tolerance", "it counts frames, and positions are given", "--radius METRES"});
+  }
   evaluation::Truth truth;
   const double radius_m = settings.radius_m.value_or(default_radius_m);
   if (reference && query) {
@@ -63,8 +66,9 @@ void add_truth_options(OptionTable& options, TruthSettings& settings) {
   options.path("truth", Access::reads, settings.file,
                "identity, no-revisit (every answer is wrong), or a CSV file query,reference and, "
                "where a row has its own, tolerance [identity]");
-  options.count("tolerance", settings.tolerance,
-                "frames by which a match may be off; not with positions [2]");
+  options.add({"tolerance", ValueKind::count,
+               "frames by which a match may be off; not with positions [2]",
+               [&settings](std::string_view value) { settings.tolerance = parse_count(value); }});
   options.path("reference-positions", Access::reads, settings.reference_positions,
                "truth by where frames were: CSV frame,x,y (metres) or "
                "frame,latitude,longitude (degrees)");
@@ -76,6 +80,11 @@ void add_truth_options(OptionTable& options, TruthSettings& settings) {
       {"unlisted", ValueKind::text,
        "answers to frames that the truth does not list are wrong or unknown (not counted) [wrong]",
        [&settings](std::string_view value) { settings.unlisted = parse_unlisted(value); }});
+}
+
+std::size_t tolerance(const TruthSettings& settings) {
+  constexpr std::size_t usual = 2;
+  return settings.tolerance.value_or(usual);
 }
 
 bool by_identity(const TruthSettings& settings) {
@@ -134,7 +143,7 @@ std::string how_near(const TruthSettings& settings) {
   if (by_positions(settings)) {
     return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
   }
-  return fmt::format("{} frames", settings.tolerance);
+  return fmt::format("{} frames", tolerance(settings));
 }
 
 }  // namespace seqloop::program

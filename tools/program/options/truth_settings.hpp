@@ -18,7 +18,7 @@ namespace seqloop::program {
 struct TruthSettings {
   /// Or `identity`, or `no-revisit`; empty: positions where given, else identity.
   std::filesystem::path file;
-  std::size_t tolerance = 2;  ///< frames; not with positions
+  std::optional<std::size_t> tolerance;  ///< frames; not with positions
   std::filesystem::path reference_positions;
   std::filesystem::path query_positions;
   std::optional<double> radius_m;
@@ -27,6 +27,9 @@ struct TruthSettings {
 
 /// @param settings lives as long as the table
 void add_truth_options(OptionTable& options, TruthSettings& settings);
+
+/// Frames by which a match may be off.
+[[nodiscard]] std::size_t tolerance(const TruthSettings& settings);
 
 /// Whether frame i of the query shows place i.
 [[nodiscard]] bool by_identity(const TruthSettings& settings);

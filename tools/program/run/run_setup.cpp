@@ -82,6 +82,18 @@ void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) 
 
 bool is_live(const std::filesystem::path& source) { return is_camera(source) || is_topic(source); }
 
+/// Adds a fault for what is asked of a camera where there is none.
+void check_camera(const RunSettings& settings, Faults& faults) {
+  const bool camera = is_camera(settings.source);
+  const bool live = is_live(settings.source) || settings.pace == Pace::live;
+  for (const auto& [flag, given] : {std::pair{"format", settings.camera.format && !camera},
+                                    {"size", settings.camera.size && !camera},
+                                    {"give-up-s", settings.give_up_s > 0.0 && !live}}) {
+    if (given)
+      faults.push_back({flag, "it goes with a camera, and the source is none", "leave it out"});
+  }
+}
+
 void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
                  Clock& clock, Faults& faults) {
   if (!is_live(settings.source)) {
@@ -142,6 +154,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     faults.push_back({"pictures", "at live pace frames may be missing from them",
                       "leave --pace live or --pictures out"});
   }
+  check_camera(settings, faults);
   DriveSettings drive = settings.drive;
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);

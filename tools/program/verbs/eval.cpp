@@ -119,7 +119,7 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
         judge.frames);
   }
   const evaluation::Measures measures =
-      measure(answers, judge.truth, settings.truth.tolerance, judge.frames);
+      measure(answers, judge.truth, tolerance(settings.truth), judge.frames);
   if (settings.json) {
     fmt::print("{}\n", as_json(measures, judge.frames).dump(2));
   } else {
@@ -130,19 +130,19 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
 /// What belongs to match lists only, and what to experiments only.
 void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, Faults faults) {
   if (settings.experiment.empty()) {
-    for (const auto& [flag, given] :
-         {std::pair{"out", !settings.out.empty()}, {"data", !settings.data.empty()}}) {
+    for (const auto& [flag, given] : {std::pair{"out", !settings.out.empty()},
+                                      {"data", !settings.data.empty()},
+                                      {"jobs", settings.jobs > 0}}) {
       if (given) faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
     }
     eval_matches(settings, std::move(faults));
     return;
   }
   take_interruptions();
-  const TruthSettings usual;
-  const bool truth_given =
-      !settings.truth.file.empty() || settings.truth.tolerance != usual.tolerance ||
-      !settings.truth.reference_positions.empty() || !settings.truth.query_positions.empty() ||
-      settings.truth.radius_m || settings.truth.unlisted;
+  const bool truth_given = !settings.truth.file.empty() || settings.truth.tolerance ||
+                           !settings.truth.reference_positions.empty() ||
+                           !settings.truth.query_positions.empty() || settings.truth.radius_m ||
+                           settings.truth.unlisted;
   for (const auto& [flag, given] : {std::pair{"matches", !settings.matches.empty()},
                                     {"truth, tolerance, positions, radius, unlisted", truth_given},
                                     {"frames", settings.frames > 0},
