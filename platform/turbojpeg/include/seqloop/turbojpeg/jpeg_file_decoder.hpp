@@ -13,8 +13,8 @@ namespace seqloop::turbojpeg {
 /// (its EXIF orientation apart), in half the time, and damage is found as it is for cameras (see
 /// MjpgDecoder). Progressive pictures are taken too.
 ///
-/// Faults are: bytes that are no JPEG picture; four colours; more than 200 million pixels; more than
-/// 500 scans; damage; too little memory.
+/// Faults are: bytes that are no JPEG picture; four colours; more than 200 million pixels; more
+/// than 500 scans; damage; too little memory.
 class JpegFileDecoder : public PictureDecoder {
  public:
   /// @param gray decode to grey, which is cheaper; else to B, G, R
