@@ -148,17 +148,21 @@ void MapWriter::settle(std::uint64_t end) noexcept {
     constexpr double enough_for_later = 0.5;
     const bool likely = frame.probability >= PlaceMap::likely;
     if (likely) last_probability_ = frame.probability;
+    // What looks alike in one drive is no visit, as long as it came back to no place for sure.
+    const auto alike = [&](std::uint64_t number) {
+      return number >= first_number_ && !comes_back_;
+    };
     std::uint64_t first = map_->first_visit(*row);
+    if (alike(first)) first = added.record.number;
     double probability =
         likely ? frame.probability : std::max(frame.probability, last_probability_);
     if (first == added.record.number) {
       const auto other = order.row_of_number(frame.place);
       if (frame.probability < enough_for_later || !other) continue;
       first = map_->first_visit(*other);
+      if (alike(first)) continue;
       probability = frame.probability;
     }
-    // What looks alike in one drive is no visit, as long as it came back to no place for sure.
-    if (first >= first_number_ && !comes_back_) continue;
     linked_[added.slot] = first;
     links_[static_cast<std::size_t>(links++ % links_.size())] = {
         0, added.record.frame, added.record.number, first, probability};

@@ -214,7 +214,9 @@ void run(const RunSettings& settings, Faults faults) {
     const std::span<const float> seen = processed->descriptor;
     if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
     lines_whole = attempt([&] { lines.add(*processed, state); });
-    attempt([&] { setup.loops->add(*processed); });
+    if (!attempt([&] { setup.loops->add(*processed); })) {
+      progress.tell("the bag of loops cannot be written on, and is given up; the run goes on");
+    }
     if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });
     if (!lines_whole) break;
     trouble.tell(*processed, clock.now());
@@ -284,13 +286,16 @@ void run(const RunSettings& settings, Faults faults) {
       setup.summary->commit();
     });
   }
-  if (!settings.pictures.empty()) {
+  if (lines_whole && !settings.pictures.empty()) {
     write_pictures(settings, recorder, map, setup.map.get(), attempt);
   }
   say_raw("seqloop: " + summary.text());
-  attempt([&] { setup.loops->end(); });
-  for (const std::string& note : setup.loops->notes()) say("{}", note);
-  setup.loops->commit(attempt);
+  // Without its lines the run ended early: what it has would replace what is whole.
+  if (lines_whole) {
+    attempt([&] { setup.loops->end(); });
+    for (const std::string& note : setup.loops->notes()) say("{}", note);
+    setup.loops->commit(attempt);
+  }
   if (setup.map && !unsaved) {
     while (const auto news = setup.map->trouble()) say("{}", *news);
   }
