@@ -131,16 +131,20 @@ class VideoSource::Impl {
   /// picture is there
   [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file) {
     if (!mjpg_ || !avi_ || !avi_->motion_jpeg) return false;
+    constexpr int looked_at = 10;  // not the first alone: webcams often damage it
     pictures_.emplace(file, *avi_);
-    if (read() && usable_) {
-      set_rate(avi_->rate);
-      if (avi_->frames > 0) declared_ = avi_->frames;
-      first_number_ = pictures_->number();
-      time_s_ = 0.0;
-      return true;
+    bool any_usable = false;
+    for (int i = 0; i < looked_at && !any_usable && read(); ++i) any_usable = usable_;
+    pictures_.emplace(file, *avi_);
+    if (!any_usable || !read()) {
+      pictures_.reset();  // some cameras send every second line as a picture of its own
+      return false;
     }
-    pictures_.reset();  // some cameras send every second line as a picture of its own
-    return false;
+    set_rate(avi_->rate);
+    if (avi_->frames > 0) declared_ = avi_->frames;
+    first_number_ = pictures_->number();
+    time_s_ = 0.0;
+    return true;
   }
 
   /// Decodes and moves the clock. @return false at the end

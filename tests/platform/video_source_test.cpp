@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/videoio.hpp>
 
 #include "expect_setup_error.hpp"
@@ -126,6 +127,33 @@ TEST_F(VideoSourceTest, TellsOfDamagedPictures) {
     EXPECT_EQ(says(std::string(frame.remark), "the JPEG picture is damaged"), i == 5);
   }
   EXPECT_EQ(source.grab(frame), Grab::end);
+}
+
+// Bad input: webcams often damage the first picture. What follows is read, and its damage told.
+TEST_F(VideoSourceTest, AFirstPictureThatIsDamagedIsOneUnreadableFrame) {
+  const TemporaryFolder folder;
+  const std::string whole = test::read_all(make_video(folder));
+  std::string none = whole;
+  none[picture_chunk(none, 0) + 8] = 'x';
+  std::string half = whole;  // grey from its middle on, where OpenCV decodes it
+  const std::size_t first = picture_chunk(half, 0) + 8;
+  const std::size_t middle = (first + picture_chunk(half, 1)) / 2;
+  std::fill_n(half.begin() + static_cast<std::ptrdiff_t>(middle), picture_chunk(half, 1) - middle,
+              '\0');
+  for (const auto& [damaged, fault] :
+       {std::pair{none, "is no JPEG picture"}, {half, "the JPEG picture is damaged"}}) {
+    VideoSource source(folder.write("damaged.avi", damaged), false, small_and_gray());
+    EXPECT_EQ(source.frame_count(), static_cast<std::uint64_t>(frames));
+    Frame frame;
+    for (int i = 0; i < frames; ++i) {
+      ASSERT_EQ(source.grab(frame), i == 0 ? Grab::unreadable : Grab::frame) << i;
+      EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+      EXPECT_DOUBLE_EQ(frame.time_s, 0.05 * i);
+      EXPECT_EQ(says(std::string(frame.fault), fault), i == 0) << frame.fault;
+    }
+    EXPECT_EQ(source.grab(frame), Grab::end);
+    EXPECT_TRUE(source.notes().empty());
+  }
 }
 
 TEST_F(VideoSourceTest, WhatTheDecoderDoesNotTakeIsLeftToOpenCv) {

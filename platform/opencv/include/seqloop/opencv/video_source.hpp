@@ -21,9 +21,8 @@ namespace seqloop::opencv {
 class VideoSource : public FrameSource {
  public:
   /// @param gray hand over grey pictures
-  /// @param mjpg decodes motion JPEG in AVI files, to a size and colour of its own, unless it
-  /// cannot
-  ///   decode the first picture; null: the backend does
+  /// @param mjpg decodes motion JPEG in AVI files, to a size and colour of its own, unless it can
+  /// decode none of the first ten pictures; null: the backend does
   /// Throws SetupError: not there, not a file, not a video, no frame in it.
   VideoSource(const std::filesystem::path& file, bool gray,
               std::unique_ptr<PictureDecoder> mjpg = nullptr);
