@@ -104,8 +104,9 @@ class VideoSource::Impl {
     if (!rate_told_)
       lines.emplace_back(
           "the video does not say its frame rate: it is taken for 25 frames a second");
-    if (ended_ && declared_ && next_ < *declared_)
-      lines.push_back("the video ended after " + std::to_string(next_) + " of the " +
+    const std::uint64_t begun = pictures_ ? pictures_->begun() : next_;
+    if (ended_ && declared_ && begun < *declared_)
+      lines.push_back("the video ended after " + std::to_string(begun) + " of the " +
                       std::to_string(*declared_) + " frames that it declares");
     return lines;
   }

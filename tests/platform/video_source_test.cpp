@@ -109,6 +109,29 @@ TEST_F(VideoSourceTest, AMomentWithoutAPictureTakesItsTime) {
   }
 }
 
+/// Little-endian, as AVI files have them.
+void set_number(std::string& bytes, std::size_t place, std::uint32_t value) {
+  for (std::size_t i = 0; i < 4; ++i) bytes.at(place + i) = static_cast<char>(value >> 8 * i);
+}
+
+// The header counts them, too.
+TEST_F(VideoSourceTest, MomentsWithoutAPictureDoNotEndAVideoEarly) {
+  const TemporaryFolder folder;
+  std::string file = test::read_all(make_video(folder));
+  file.insert(picture_chunk(file, 2), std::string("00dc\0\0\0\0", 8));
+  const auto notes = [&](std::uint32_t declared) {
+    set_number(file, file.find("strh") + 8 + 32, declared);
+    VideoSource source(folder.write("gap.avi", file), false, small_and_gray());
+    Frame frame;
+    while (source.grab(frame) != Grab::end) {
+    }
+    return source.notes();
+  };
+  EXPECT_EQ(notes(frames + 1), std::vector<std::string>());
+  EXPECT_EQ(notes(frames + 2),
+            std::vector<std::string>{"the video ended after 13 of the 14 frames that it declares"});
+}
+
 // Bad input: what is no picture ends the video where OpenCV decodes it. Of a damaged one the rest
 // is made up there, without a word.
 TEST_F(VideoSourceTest, TellsOfDamagedPictures) {
@@ -186,11 +209,6 @@ TEST_F(VideoSourceTest, NotesThatAVideoEndedEarly) {
     ASSERT_EQ(source.notes().size(), 1U);
     EXPECT_TRUE(says(source.notes()[0], "ended after " + std::to_string(count) + " of the 12"));
   }
-}
-
-/// Little-endian, as AVI files have them.
-void set_number(std::string& bytes, std::size_t place, std::uint32_t value) {
-  for (std::size_t i = 0; i < 4; ++i) bytes.at(place + i) = static_cast<char>(value >> 8 * i);
 }
 
 // Bad input: a video without a frame rate, which OpenCV silently takes for 25.

@@ -31,12 +31,15 @@ class AviPictures {
   /// are counted, so that its time is this number of frame times.
   [[nodiscard]] std::uint64_t number() const noexcept { return begun_ - 1; }
 
+  /// Pictures and moments without one so far. A file's header declares both.
+  [[nodiscard]] std::uint64_t begun() const noexcept { return begun_; }
+
  private:
   std::ifstream bytes_;
   std::uint64_t size_ = 0;   ///< of the file, bytes
   std::uint64_t place_ = 0;  ///< of the next chunk
-  std::uint64_t begun_ = 0;  ///< pictures and empty chunks passed
-  int stream_;               ///< of the video among the file's streams
+  std::uint64_t begun_ = 0;
+  int stream_;  ///< of the video among the file's streams
 };
 
 }  // namespace seqloop::opencv
