@@ -137,6 +137,20 @@ TEST(JpegFiles, AreTurnedAsOpenCvTurnsThem) {
   EXPECT_TRUE(says(fault_of(sideways), "truncated"));
 }
 
+// As phones and editors write them. OpenCV 4.6 looks at the first segment alone.
+TEST(JpegFiles, AreTurnedWhereOtherDataStandsBeforeExif) {
+  Bytes sideways = with_orientation(jpeg_of(textured(37, 20)), 6, "II");
+  const std::string xmp = "http://ns.adobe.com/xap/1.0/";
+  sideways.insert(sideways.begin() + 2, xmp.begin(), xmp.end());
+  sideways.insert(sideways.begin() + 2, {0xff, 0xe1, 0, static_cast<std::uint8_t>(xmp.size() + 2)});
+  const TemporaryFolder folder;
+  folder.write("a.jpg", text(sideways));
+  ImageFolderSource source = open(folder);
+  Frame frame;
+  ASSERT_EQ(source.grab(frame), Grab::frame) << frame.fault;
+  EXPECT_EQ(std::pair(frame.image.width, frame.image.height), std::pair(20, 37));
+}
+
 TEST(JpegFiles, DamageInTheMiddleIsAFault) {
   constexpr unsigned seed = 5;
   std::mt19937 random(seed);

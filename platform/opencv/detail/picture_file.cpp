@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 namespace seqloop::opencv {
 namespace {
@@ -13,6 +12,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::array<std::uint8_t, 3> jpeg_start{0xff, 0xd8, 0xff};
 constexpr std::array<std::uint8_t, 8> png_start{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr std::array<std::uint8_t, 2> jpeg_end{0xff, 0xd9};
+constexpr std::array<std::uint8_t, 6> exif_start{'E', 'x', 'i', 'f', 0, 0};
 constexpr std::uint64_t most_pixels = 200'000'000;  // largest camera sensors; 0.6 GB when decoded
 
 constexpr std::string_view truncated = "the file is truncated";
@@ -43,14 +43,11 @@ bool is_frame(std::uint8_t marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/// @param segment of a JPEG's APP1, without marker and length
-/// @return EXIF's orientation; 1 where it does not say one
-int orientation_in(Bytes segment) {
-  constexpr std::array<std::uint8_t, 6> exif_start{'E', 'x', 'i', 'f', 0, 0};
+/// @param tiff EXIF's data
+/// @return its orientation; 1 where it does not say one
+int orientation_in(Bytes tiff) {
   constexpr std::uint64_t orientation_tag = 0x0112;
   constexpr std::size_t entry_bytes = 12;  // tag, type, count, value
-  if (!starts_with(segment, exif_start)) return 1;
-  const Bytes tiff = segment.subspan(exif_start.size());
   const bool little = !tiff.empty() && tiff[0] == 'I';
   const auto number = [&](std::uint64_t place, std::size_t count) {
     const std::uint64_t value = big_endian(tiff, place, count);
@@ -74,7 +71,7 @@ int orientation_in(Bytes segment) {
 /// own.
 void look_at_jpeg(Bytes file, PictureFile& seen) {
   seen.jpeg = true;
-  bool application_data = false;
+  bool exif = false;
   std::size_t place = 2;
   while (true) {
     if (place + 4 > file.size()) break;
@@ -92,9 +89,11 @@ void look_at_jpeg(Bytes file, PictureFile& seen) {
     }
     place += 2 + length;
     if (place >= file.size()) break;
-    // EXIF comes first.
-    if (marker == 0xe1 && length >= 2 && !std::exchange(application_data, true))
-      seen.orientation = orientation_in(file.subspan(place - length + 2, length - 2));
+    if (marker == 0xe1 && length >= 2 && !exif) {
+      const Bytes segment = file.subspan(place - length + 2, length - 2);
+      exif = starts_with(segment, exif_start);  // XMP's has the same marker, and may stand before
+      if (exif) seen.orientation = orientation_in(segment.subspan(exif_start.size()));
+    }
     if (marker != 0xda) continue;  // start of scan
     const Bytes data = file.subspan(place);
     // Searched from behind: some cameras append data of their own.
