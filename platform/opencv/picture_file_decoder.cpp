@@ -55,7 +55,7 @@ class PictureFileDecoder::Impl {
     try {
       // Four inks are OpenCV's business.
       return jpeg_ && seen.jpeg && seen.components != 4 ? decode_jpeg(file, seen.orientation, image)
-                                                        : decode_any(file, image);
+                                                        : decode_any(file, seen.white, image);
     } catch (const cv::Exception& failure) {  // sizes that OpenCV refuses
       if (failure.code == cv::Error::StsNoMem) return no_memory(" (" + one_line(failure.err) + ")");
     } catch (const std::bad_alloc&) {
@@ -67,11 +67,16 @@ class PictureFileDecoder::Impl {
   }
 
  private:
-  [[nodiscard]] std::string_view decode_any(std::span<const std::uint8_t> file, Image& image) {
+  /// @param white its value in a PGM or PPM; 0: other formats
+  [[nodiscard]] std::string_view decode_any(std::span<const std::uint8_t> file, std::uint64_t white,
+                                            Image& image) {
+    // Of two bytes OpenCV keeps the upper one, whatever white is: little of 10 or 12 bits.
+    const bool deep = white > 255 && white < 65'535;
     // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
     picture_.release();
-    picture_ = file_codecs().decode(file, flags_);
+    picture_ = file_codecs().decode(file, deep ? flags_ | cv::IMREAD_ANYDEPTH : flags_);
     if (picture_.empty()) return unreadable;
+    if (deep) picture_.convertTo(picture_, CV_8U, 255.0 / static_cast<double>(white));
     image = view(picture_);
     return {};
   }

@@ -85,6 +85,35 @@ TEST(ImageFolderSource, MakesEightBitGreyOrBgrOfDeepAndTransparentPictures) {
   EXPECT_EQ(h.frame.image.data[0], 0x80);
 }
 
+// Cameras of 10 and 12 bits write them: white is what the header says it is.
+TEST(ImageFolderSource, ScalesPgmAndPpmToTheirWhite) {
+  const std::string comment = "\n# made in 1995 by a camera of 12 bits\n";
+  const std::string half{1, static_cast<char>(0xff)};  // 511
+  const std::string whole{3, static_cast<char>(0xff)};
+  const std::string above{static_cast<char>(0xff), static_cast<char>(0xff)};
+  const TemporaryFolder folder;
+  folder.write("1.pgm", "P5" + comment + "3 1 1023\n" + half + whole + above);
+  folder.write("2.ppm", "P6 1 1" + comment + "1023\n" + half + half + whole);
+  folder.write("3.pgm", "P2 2 1 4095\n2048 4095\n");
+  folder.write("4.pgm", "P5 2 1 255\n\x7f\xff");
+  folder.write("5.pgm", "P5 2 1 65535\n\x7f\xff\xff\xff");
+  folder.write("6.pgm", "P5 3 1 1023\n" + half);
+  for (const bool gray : {false, true}) {
+    ImageFolderSource source(folder.path(), gray);
+    for (const std::vector<int>& values : std::vector<std::vector<int>>{
+             {127, 255, 255}, {gray ? 142 : 255}, {128, 255}, {127, 255}, {127, 255}}) {
+      const Grabbed g = next(source);
+      ASSERT_EQ(g.grab, Grab::frame) << g.fault;
+      EXPECT_EQ(g.frame.image.format, gray ? PixelFormat::gray8 : PixelFormat::bgr8);
+      std::vector<int> got;
+      for (std::size_t x = 0; x < values.size(); ++x)
+        got.push_back(g.frame.image.data[x * (gray ? 1 : 3)]);
+      EXPECT_EQ(got, values) << g.frame.index;
+    }
+    EXPECT_TRUE(says(next(source).fault, "6.pgm: the file is no readable picture"));
+  }
+}
+
 TEST(ImageFolderSource, NotesWhatIsLeftOutAndSizesThatDiffer) {
   const TemporaryFolder folder;
   folder.write("1.png", encoded(textured(8, 8), ".png"));

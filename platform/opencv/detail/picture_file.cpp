@@ -135,6 +135,20 @@ void look_at_png(Bytes file, PictureFile& seen) {
   seen.fault = truncated;
 }
 
+/// The header: width, height and the value of white, with blanks and comments between.
+void look_at_pnm(Bytes file, PictureFile& seen) {
+  const auto is_digit = [&](std::size_t place) {
+    return place < file.size() && file[place] >= '0' && file[place] <= '9';
+  };
+  std::size_t place = 2;
+  for (int number = 0; number < 3; ++number) {
+    for (bool comment = false; place < file.size() && (comment || !is_digit(place)); ++place)
+      comment = file[place] == '#' || (comment && file[place] != '\n' && file[place] != '\r');
+    seen.white = 0;
+    for (; is_digit(place); ++place) seen.white = seen.white * 10 + (file[place] - '0');
+  }
+}
+
 }  // namespace
 
 PictureFile look_at(Bytes file) noexcept {
@@ -145,6 +159,8 @@ PictureFile look_at(Bytes file) noexcept {
     if (has_too_many_scans(file)) seen.fault = too_many_scans;
   }
   if (starts_with(file, png_start)) look_at_png(file, seen);
+  if (file.size() > 1 && file[0] == 'P' && file[1] >= '2' && file[1] <= '6' && file[1] != '4')
+    look_at_pnm(file, seen);
   if (seen.width * seen.height > most_pixels) seen.fault = too_large;
   return seen;
 }
