@@ -85,6 +85,19 @@ TEST_F(DriveFaults, AVideoThatPromisesTooMuchIsNamed) {
               {"ended after 50 of the 2147483648 frames"});
 }
 
+TEST_F(DriveFaults, AVideoThatPromisesTooLittleIsReadToItsEnd) {
+  std::string bytes = video();
+  set_number(bytes, bytes.find("avih") + 8 + 16, 3);
+  set_number(bytes, bytes.find("strh") + 8 + 32, 3);
+  folder_.write("drive.avi", bytes);
+  const test::Outcome alone = run("run --source drive.avi --ds 4 --exclude 10 --out r.jsonl");
+  expect_says(alone, 0, {});
+  EXPECT_EQ(alone.err.find("the map was full"), std::string::npos) << alone.err;
+  EXPECT_EQ(lines("r.jsonl").size(), 50U);
+  expect_says(run("run --source drive.avi --reference drive.avi --ds 4 --out r.jsonl"), 0, {});
+  EXPECT_EQ(lines("r.jsonl").size(), 50U);
+}
+
 TEST_F(DriveFaults, AVideoWithoutAFrameRateIsRemarkedOn) {
   std::string bytes = video();
   folder_.write("drive.avi", bytes);

@@ -31,8 +31,14 @@ void choose_places(RunSetup& setup, const RunSettings& settings, const FrameSour
   const auto frames = drive == nullptr ? std::nullopt : drive->frame_count();
   setup.places = static_cast<std::size_t>(std::min<std::uint64_t>(
       frames.value_or(unknown_length), std::numeric_limits<std::size_t>::max()));
+  if (frames && !known_length(*drive)) {
+    // More frames may come than a video declares: they have room where it costs little memory.
+    constexpr std::size_t little = 64'000'000;  // bytes, in floating point
+    setup.places = std::max(
+        setup.places, std::min(unknown_length, little / (setup.descriptor_size * sizeof(float))));
+  }
   setup.why_places = {"max-places",
-                      frames
+                      frames && *frames >= setup.places
                           ? fmt::format("not given, and {} declares {} frames: there is room for "
                                         "as many places",
                                         name.string(), *frames)
@@ -194,7 +200,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                                   size_of(setup.reference.get()), setup.descriptor_size),
                       "describe both with the same model and layer"});
   }
-  if (const auto frames = setup.recording ? setup.recording->frame_count() : std::nullopt) {
+  if (const auto frames = setup.recording ? known_length(*setup.recording) : std::nullopt) {
     // Into a map that lasts a drive is added that closes no loop, too.
     MatcherConfig config = setup.config;
     if (lasts) config.use = Use::localise;
