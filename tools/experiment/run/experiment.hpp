@@ -13,6 +13,7 @@
 #include "experiment/run/leave_out.hpp"
 #include "program/drives/drives.hpp"
 #include "program/drives/stills_source.hpp"
+#include "program/options/matcher_settings.hpp"
 #include "program/options/truth_settings.hpp"
 #include "seqloop/matcher_config.hpp"
 
@@ -56,7 +57,8 @@ struct RunSpec {
   std::size_t descriptor;  ///< index of it
   std::size_t pair;        ///< likewise
   evaluation::ThresholdOn threshold_on;
-  MatcherConfig config;
+  program::MatcherSettings matcher;
+  MatcherConfig config;           ///< of these, before the slice is suited to the map
   std::vector<Setting> settings;  ///< as written, those of the descriptor that are swept included
 };
 

@@ -12,7 +12,6 @@
 #include "experiment/run/shown_sections.hpp"
 #include "files/text_file.hpp"
 #include "program/drives/stills_options.hpp"
-#include "program/options/matcher_settings.hpp"
 #include "program/options/verb.hpp"
 
 namespace seqloop::experiment {
@@ -299,7 +298,7 @@ class Reader {
         const PairSpec& pair = experiment_.pairs[p];
         if (!has(pairs, pair.name)) continue;
         const Use use = pair.reference.empty() ? Use::close_loops : Use::localise;
-        RunSpec run{method, d, p, threshold_on, resolve(matcher, use, faults), chosen};
+        RunSpec run{method, d, p, threshold_on, matcher, resolve(matcher, use, faults), chosen};
         for (Setting& setting : run.settings) {
           // In the report a method is what the file calls it.
           if (setting.name == "method") setting.name = "algorithm";

@@ -8,6 +8,7 @@
 
 #include "experiment/run/matrix_recorder.hpp"
 #include "program/drives/match_drive.hpp"
+#include "program/options/matcher_settings.hpp"
 #include "program/process/interruption.hpp"
 #include "seqloop/detector.hpp"
 
@@ -40,22 +41,24 @@ void add(std::vector<evaluation::Answer>& all, std::span<const Answer> answers,
 
 }  // namespace
 
-MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
-                      evaluation::ThresholdOn threshold_on, bool with_matrix) {
+MatchedRun match_pair(const RunSpec& run, DescribedPair pair, bool with_matrix) {
   const files::Matrix& query = pair.query;
+  MatcherConfig config = run.config;
+  suit_slice(config, run.matcher, pair.reference ? pair.reference->rows : query.rows);
   PlaceMap map = program::map_for(config, std::move(pair.reference), query);
   Detector detector(config, map);
   MatrixRecorder recorder(query.rows);
   std::vector<float> column;
-  MatchedRun run;
+  MatchedRun matched;
   std::uint64_t searched = 0;
   for (std::size_t row = 0; row < query.rows; ++row) {
     program::stop_if_interrupted();
     const auto begin = std::chrono::steady_clock::now();
     const FrameReport report = detector.step(query.row(row));
-    run.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    run.distances += static_cast<double>(report.work.distances);
-    run.most_distances = std::max<std::uint64_t>(run.most_distances, report.work.distances);
+    matched.seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    matched.distances += static_cast<double>(report.work.distances);
+    matched.most_distances = std::max<std::uint64_t>(matched.most_distances, report.work.distances);
     if (with_matrix) {
       column.resize(map.size());
       detector.newest_column(column);
@@ -63,14 +66,14 @@ MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
       recorder.add(column);
     }
     if (report.work.candidates > 0) ++searched;
-    run.candidates += static_cast<double>(report.work.candidates);
-    add(run.answers, report.answers, threshold_on);
+    matched.candidates += static_cast<double>(report.work.candidates);
+    add(matched.answers, report.answers, run.threshold_on);
   }
-  add(run.answers, detector.finish(), threshold_on);
-  run.distances /= static_cast<double>(query.rows);
-  if (searched > 0) run.candidates /= static_cast<double>(searched);
-  if (with_matrix) run.matrix_png = recorder.png();
-  return run;
+  add(matched.answers, detector.finish(), run.threshold_on);
+  matched.distances /= static_cast<double>(query.rows);
+  if (searched > 0) matched.candidates /= static_cast<double>(searched);
+  if (with_matrix) matched.matrix_png = recorder.png();
+  return matched;
 }
 
 }  // namespace seqloop::experiment

@@ -5,9 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "experiment/report/result.hpp"
+#include "experiment/run/experiment.hpp"
 #include "seqloop/files/npy_file.hpp"
-#include "seqloop/matcher_config.hpp"
 
 namespace seqloop::experiment {
 
@@ -28,9 +27,8 @@ struct MatchedRun {
   std::vector<std::uint8_t> matrix_png;  ///< empty unless asked for
 };
 
-/// Matches a drive. Memory: both drives, the map and the detector.
+/// Matches a drive as `seqloop match` does. Memory: both drives, the map and the detector.
 /// Throws SetupError, and when the program is interrupted.
-[[nodiscard]] MatchedRun match_pair(const MatcherConfig& config, DescribedPair pair,
-                                    evaluation::ThresholdOn threshold_on, bool with_matrix);
+[[nodiscard]] MatchedRun match_pair(const RunSpec& run, DescribedPair pair, bool with_matrix);
 
 }  // namespace seqloop::experiment

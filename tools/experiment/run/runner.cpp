@@ -225,8 +225,7 @@ class Runner {
                   queries,
                   truth.frames(),
                   described.query.columns};
-    const MatchedRun matched =
-        match_pair(run.config, std::move(described), run.threshold_on, shown_as_matrix(run));
+    const MatchedRun matched = match_pair(run, std::move(described), shown_as_matrix(run));
     result.measures = measure(matched.answers, truth, tolerance(pair.truth), truth.frames());
     result.distances = matched.distances;
     result.most_distances = matched.most_distances;
