@@ -50,6 +50,13 @@ TEST_F(EvalByPositions, OneRowsToleranceThroughTheFlags) {
   const auto json =
       nlohmann::json::parse(run("eval --json --matches m.csv --truth t.csv --tolerance 5").out);
   EXPECT_EQ(json["correct"], 2);
+  const auto words = run("eval --matches m.csv --truth t.csv");
+  EXPECT_NE(words.out.find("2 of them right (within the truth's own tolerances)"),
+            std::string::npos)
+      << words.out;
+  folder_.write("t.csv", "query,reference\n0,1\n1,4\n2,4\n");
+  const auto asked = run("eval --matches m.csv --truth t.csv --tolerance 1");
+  EXPECT_NE(asked.out.find("2 of them right (within 1 frames)"), std::string::npos) << asked.out;
 }
 
 TEST_F(EvalByPositions, EveryFaultAtOnce) {

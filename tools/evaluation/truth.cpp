@@ -56,13 +56,13 @@ Truth Truth::laps(std::uint64_t frames, std::uint64_t laps) {
 Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
   const std::size_t query = table.column("query");
   const std::size_t reference = table.column("reference");
-  const bool own_tolerances = table.has("tolerance");
   Truth truth;
+  truth.own_tolerances_ = table.has("tolerance");
   truth.unlisted_ = unlisted;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::uint64_t place = table.whole(row, reference);
     Run run{place, place};
-    if (own_tolerances) run.tolerance = table.whole(row, table.column("tolerance"));
+    if (truth.own_tolerances_) run.tolerance = table.whole(row, table.column("tolerance"));
     truth.places_[table.whole(row, query)].push_back(run);
   }
   if (truth.places_.empty()) throw SetupError(Fault{"truth", "it has no rows"});

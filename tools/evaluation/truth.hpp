@@ -58,6 +58,9 @@ class Truth {
     return unlisted_ == Unlisted::wrong || places_.contains(query);
   }
 
+  /// Whether each row says how far off a match may be, so that no asked tolerance counts.
+  [[nodiscard]] bool has_own_tolerances() const noexcept { return own_tolerances_; }
+
   /// @param tolerance frames
   [[nodiscard]] bool right(std::uint64_t query, std::uint64_t match,
                            std::uint64_t tolerance) const noexcept;
@@ -73,6 +76,7 @@ class Truth {
   std::optional<std::uint64_t> identity_frames_;      // set: frame i shows place i
   std::map<std::uint64_t, std::vector<Run>> places_;  // of a query that is new: none
   Unlisted unlisted_ = Unlisted::wrong;
+  bool own_tolerances_ = false;
 };
 
 }  // namespace seqloop::evaluation

@@ -139,10 +139,11 @@ evaluation::ThresholdOn parse_threshold(std::string_view text) {
                               "' is none of uniqueness, score, probability");
 }
 
-std::string how_near(const TruthSettings& settings) {
+std::string how_near(const TruthSettings& settings, const evaluation::Truth& truth) {
   if (by_positions(settings)) {
     return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
   }
+  if (truth.has_own_tolerances()) return "the truth's own tolerances";
   return fmt::format("{} frames", tolerance(settings));
 }
 

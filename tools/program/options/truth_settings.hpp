@@ -57,7 +57,7 @@ struct JudgedBy {
 /// What `--threshold-on` says. Throws std::invalid_argument: why not.
 [[nodiscard]] evaluation::ThresholdOn parse_threshold(std::string_view text);
 
-/// How far off a right answer may be, in words.
-[[nodiscard]] std::string how_near(const TruthSettings& settings);
+/// How far off an answer may be that is right by this truth, in words.
+[[nodiscard]] std::string how_near(const TruthSettings& settings, const evaluation::Truth& truth);
 
 }  // namespace seqloop::program

@@ -123,7 +123,7 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
   if (settings.json) {
     fmt::print("{}\n", as_json(measures, judge.frames).dump(2));
   } else {
-    print_words(measures, judge.frames, how_near(settings.truth));
+    print_words(measures, judge.frames, how_near(settings.truth, judge.truth));
   }
 }
 
