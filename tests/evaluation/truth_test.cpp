@@ -2,8 +2,11 @@
 #include "evaluation/truth.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -134,6 +137,53 @@ TEST(Truth, ByPositionsOnEarthAgreesWithHaversines) {
     }
     EXPECT_GT(near, 500U);
   }
+}
+
+TEST(Truth, OfLoopsIsWhatTheRobotHadLeftInBetween) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> step(0.0, 3.0);
+  std::vector<std::array<double, 2>> driven;
+  std::vector<std::string> lines;
+  double x = 0.0;
+  double y = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    if (i % 10 > 2) {  // otherwise it stands
+      x += step(random);
+      y += step(random);
+    }
+    driven.push_back({x, y});
+    lines.push_back(fmt::format("{},{},{}\n", 3 * i, x, y));
+  }
+  std::ranges::shuffle(lines, random);
+  const Positions drive = positions(fmt::format("frame,x,y\n{}", fmt::join(lines, "")));
+  std::size_t loops = 0;
+  for (const double radius : {2.0, 6.0, 15.0}) {
+    const auto near = [&](std::size_t a, std::size_t b) {
+      return std::hypot(driven[a][0] - driven[b][0], driven[a][1] - driven[b][1]) <= radius;
+    };
+    const Truth truth = Truth::loops_from_positions(drive, radius, Unlisted::unknown);
+    for (std::size_t query = 0; query < driven.size(); ++query) {
+      for (std::size_t match = 0; match < driven.size(); ++match) {
+        bool left = false;
+        for (std::size_t k = match + 1; k < query; ++k) left = left || !near(k, query);
+        const bool loop = left && near(match, query);
+        EXPECT_EQ(truth.right(3 * query, 3 * match, 9), loop) << query << ' ' << match;
+        loops += loop ? 1U : 0U;
+      }
+      EXPECT_TRUE(truth.judges(3 * query)) << "new, where it comes back to nothing";
+    }
+    EXPECT_FALSE(truth.judges(1));
+  }
+  EXPECT_GT(loops, 500U);
+  const Positions ahead = positions("frame,x,y\n0,0,0\n1,9,0\n2,18,0\n");
+  EXPECT_TRUE(test::says(test::setup_error([&] { (void)Truth::loops_from_positions(ahead, 10.0); }),
+                         "no-revisit"));
+  EXPECT_TRUE(test::says(test::setup_error([&] { (void)Truth::loops_from_positions(ahead, 0.0); }),
+                         "above 0"));
+  const Positions round =
+      positions("frame,latitude,longitude\n0,60,10\n1,60.001,10\n2,60.0001,10\n");
+  EXPECT_TRUE(Truth::loops_from_positions(round, 20.0).right(2, 0, 0)) << "11 m over the ground";
+  EXPECT_THROW((void)Truth::loops_from_positions(round, 10.0), SetupError);
 }
 
 TEST(Truth, ADegreeOfLatitudeIs111Kilometres) {

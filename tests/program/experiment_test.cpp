@@ -473,6 +473,11 @@ name = "a little is known"
 query = ["first", "second"]
 truth = "t.csv"
 unlisted = "unknown"
+[[pair]]
+name = "by where it was"
+query = ["first", "second"]
+query-positions = "laps.csv"
+radius = 1.5
 [[method]]
 name = "m"
 method = "seqcnnslam"
@@ -485,9 +490,12 @@ kind = "reliability"
 panel = "pair"
 )"));
   folder_.write("t.csv", "query,reference\n50,10\n60,20\n");
+  std::string places = "frame,x,y\n";
+  for (int i = 0; i < 80; ++i) places += fmt::format("{},{},0\n", i, i % 40);
+  folder_.write("laps.csv", places);
   expect_done();
   const auto table = evaluation::CsvTable::read(file("out/results.csv"));
-  ASSERT_EQ(table.rows(), 3U);
+  ASSERT_EQ(table.rows(), 4U);
   const auto number = [&](std::size_t row, const char* name) {
     return table.number(row, table.column(name));
   };
@@ -500,6 +508,9 @@ panel = "pair"
   EXPECT_EQ(number(2, "correct"), 2.0);
   EXPECT_EQ(number(2, "precision"), 1.0);
   EXPECT_EQ(number(2, "unknown"), number(0, "answered") - 2.0);
+  for (const char* same : {"frames", "answered", "correct", "recall"}) {
+    EXPECT_EQ(number(3, same), number(0, same)) << same;
+  }
   EXPECT_TRUE(exists("out/figure-1-said.svg"));
 }
 
@@ -523,6 +534,16 @@ query = ["second", "third"]
 name = "listed"
 query = ["first", "second"]
 unlisted = "unknown"
+[[pair]]
+name = "near itself"
+query = "first"
+reference-positions = "r.csv"
+query-positions = "r.csv"
+[[pair]]
+name = "half placed"
+reference = "first"
+query = "second"
+query-positions = "r.csv"
 [[method]]
 name = "m"
 method = "seqcnnslam"
@@ -535,7 +556,8 @@ kind = "reliable"
 )"));
   expect_refused({"'of two lengths': frames i cannot belong together in drives of 40 and of 6",
                   "'reference' is one drive", "pair 'which i' has several query drives",
-                  "unlisted: it goes with a truth", "'speed' is none of",
+                  "unlisted: it goes with a truth", "leave reference-positions out",
+                  "'half placed' has a reference drive, whose positions", "'speed' is none of",
                   "none of precision-recall, reliability"});
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Truth by where frames were, through the real binary.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "program/program.hpp"
@@ -59,11 +61,28 @@ TEST_F(EvalByPositions, OneRowsToleranceThroughTheFlags) {
   EXPECT_NE(asked.out.find("2 of them right (within 1 frames)"), std::string::npos) << asked.out;
 }
 
+TEST_F(EvalByPositions, OfOneDriveTheFirstLapIsNoLoop) {
+  std::string laps = "frame,x,y\n";
+  std::string matches = "query,match,score,uniqueness\n";
+  for (int i = 0; i < 40; ++i) laps += fmt::format("{},{},0\n", i, i % 20);
+  for (int i = 20; i < 40; ++i) matches += fmt::format("{},{},.5,.1\n", i, i - 20);
+  folder_.write("laps.csv", laps);
+  folder_.write("m.csv", matches);
+  const auto outcome = run("eval --json --matches m.csv --radius 3 --query-positions laps.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["frames"], 20);
+  EXPECT_EQ(json["correct"], 20);
+  EXPECT_EQ(json["recall"], 1.0);
+  expect_refused("--radius 3 --reference-positions laps.csv --query-positions ./laps.csv",
+                 {"every frame is near itself", "leave --reference-positions out"});
+}
+
 TEST_F(EvalByPositions, EveryFaultAtOnce) {
   expect_refused("--reference-positions none.csv --query-positions none2.csv --radius 0 --truth t",
                  {"none.csv", "none2.csv", "radius", "truth: positions are given too", "t: "});
   expect_refused("--reference-positions r.csv", {"query-positions: not given"});
-  expect_refused("--query-positions q.csv", {"reference-positions: not given"});
+  expect_refused("--query-positions q.csv --radius 0", {"above 0"});
   expect_refused("--truth identity " + both_, {"leave one of them out"});
   expect_refused("--radius 3", {"radius", "--reference-positions"});
   expect_refused("--tolerance 2 " + both_, {"tolerance: it counts frames"});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "seqloop/fault.hpp"
@@ -32,6 +33,14 @@ std::vector<std::uint64_t> frames_near(const std::vector<Positions::Place>& sort
   }
   std::ranges::sort(frames);
   return frames;
+}
+
+/// The radius along a straight line, as positions are compared. Throws SetupError: it is none.
+double most_apart(double radius_m, bool on_earth) {
+  if (!(radius_m > 0.0 && std::isfinite(radius_m))) {
+    throw SetupError(Fault{"radius", "it must be above 0 metres"});
+  }
+  return on_earth ? chord(radius_m) : radius_m;
 }
 
 }  // namespace
@@ -71,33 +80,56 @@ Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
 
 Truth Truth::from_positions(Positions reference, const Positions& query, double radius_m,
                             Unlisted unlisted) {
-  if (!(radius_m > 0.0 && std::isfinite(radius_m))) {
-    throw SetupError(Fault{"radius", "it must be above 0 metres"});
-  }
+  const double most = most_apart(radius_m, query.on_earth);
   if (reference.on_earth != query.on_earth) {
     throw SetupError({"reference-positions, query-positions",
                       "one has x,y and the other latitude,longitude", "give both alike"});
   }
-  const double most = query.on_earth ? chord(radius_m) : radius_m;
   std::ranges::sort(reference.places, {}, northing);
   Truth truth;
   truth.unlisted_ = unlisted;
   for (const Positions::Place& here : query.places) {
-    std::vector<Run> runs;
-    for (const std::uint64_t frame : frames_near(reference.places, here, most)) {
-      if (!runs.empty() && runs.back().last + 1 == frame) {
-        runs.back().last = frame;
-      } else {
-        runs.push_back({frame, frame, 0});
-      }
-    }
-    truth.places_[here.frame] = std::move(runs);
+    truth.places_[here.frame] = runs_of(frames_near(reference.places, here, most));
   }
   if (truth.frames() == 0) {
     throw SetupError({"radius", "no query frame is that near to a reference frame",
                       "widen it, or check that both drives use the same coordinates"});
   }
   return truth;
+}
+
+Truth Truth::loops_from_positions(const Positions& drive, double radius_m, Unlisted unlisted) {
+  const double most = most_apart(radius_m, drive.on_earth);
+  std::vector<Positions::Place> by_northing = drive.places;
+  std::ranges::sort(by_northing, {}, northing);
+  std::vector<Positions::Place> driven = drive.places;
+  std::ranges::sort(driven, {}, &Positions::Place::frame);
+  Truth truth;
+  truth.unlisted_ = unlisted;
+  for (auto here = driven.begin(); here != driven.end(); ++here) {
+    auto came = here;  // the robot has been near since then
+    while (came != driven.begin() && within(*std::prev(came), *here, most)) --came;
+    std::vector<std::uint64_t> frames = frames_near(by_northing, *here, most);
+    frames.erase(std::ranges::lower_bound(frames, came->frame), frames.end());
+    truth.places_[here->frame] = runs_of(frames);
+  }
+  if (truth.frames() == 0) {
+    throw SetupError({"radius", "no frame comes back that near to where the robot had been",
+                      "widen it, or give the truth no-revisit if nothing comes back"});
+  }
+  return truth;
+}
+
+std::vector<Truth::Run> Truth::runs_of(std::span<const std::uint64_t> frames) {
+  std::vector<Run> runs;
+  for (const std::uint64_t frame : frames) {
+    if (!runs.empty() && runs.back().last + 1 == frame) {
+      runs.back().last = frame;
+    } else {
+      runs.push_back({frame, frame, 0});
+    }
+  }
+  return runs;
 }
 
 std::uint64_t Truth::frames() const noexcept {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "evaluation/csv.hpp"
@@ -46,6 +47,13 @@ class Truth {
   static Truth from_positions(Positions reference, const Positions& query, double radius_m,
                               Unlisted unlisted = Unlisted::wrong);
 
+  /// Loops within one drive: a frame shows every earlier one that was at most the radius away, if
+  /// the robot was farther away than that in between. Otherwise it is as above.
+  /// Work: as above, and a distance for each frame since the robot came near.
+  /// Throws SetupError: the radius; no frame comes back.
+  static Truth loops_from_positions(const Positions& drive, double radius_m,
+                                    Unlisted unlisted = Unlisted::wrong);
+
   /// Frames that have a place.
   [[nodiscard]] std::uint64_t frames() const noexcept;
 
@@ -72,6 +80,9 @@ class Truth {
     std::uint64_t last;
     std::optional<std::uint64_t> tolerance = {};  ///< frames; the asked one when it has none
   };
+
+  /// @param frames ascending
+  static std::vector<Run> runs_of(std::span<const std::uint64_t> frames);
 
   std::optional<std::uint64_t> identity_frames_;      // set: frame i shows place i
   std::map<std::uint64_t, std::vector<Run>> places_;  // of a query that is new: none

@@ -199,7 +199,13 @@ class Reader {
     if (closing && !pair.truth.reference_positions.empty()) {
       section.refuse(
           "pair '" + pair.name + "' closes loops within a drive, where every frame is near itself",
-          "give a truth = \"FILE.csv\"");
+          "leave reference-positions out, so that only earlier frames count that the robot had "
+          "left");
+    }
+    if (!closing && !pair.truth.query_positions.empty() && pair.truth.reference_positions.empty()) {
+      section.refuse(
+          "pair '" + pair.name + "' has a reference drive, whose positions are not given",
+          "reference-positions = \"FILE.csv\"");
     }
     for (const double grey : {rule.dark_below, rule.standing_below}) {
       if (!(grey >= 0.0 && grey <= 255.0)) {

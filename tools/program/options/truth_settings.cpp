@@ -31,16 +31,17 @@ evaluation::Unlisted parse_unlisted(std::string_view text) {
 evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) {
   std::optional<evaluation::Positions> reference;
   std::optional<evaluation::Positions> query;
-  const auto read = [&](auto& into, const std::filesystem::path& file, const std::string& flag) {
-    if (file.empty()) {
-      faults.push_back({flag, "not given, but the other drive's are", "--" + flag + " FILE.csv"});
-      return;
-    }
+  const auto read = [&](auto& into, const std::filesystem::path& file) {
+    if (file.empty()) return;
     collect(faults,
             [&] { into = evaluation::Positions::from_csv(evaluation::CsvTable::read(file)); });
   };
-  read(reference, settings.reference_positions, "reference-positions");
-  read(query, settings.query_positions, "query-positions");
+  read(reference, settings.reference_positions);
+  read(query, settings.query_positions);
+  if (settings.query_positions.empty()) {
+    faults.push_back(
+        {"query-positions", "not given, but the other drive's are", "--query-positions FILE.csv"});
+  }
   if (!settings.file.empty()) {
     faults.push_back({"truth", "positions are given too", "leave one of them out"});
   }
@@ -49,7 +50,11 @@ evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) 
   }
   evaluation::Truth truth;
   const double radius_m = settings.radius_m.value_or(default_radius_m);
-  if (reference && query) {
+  if (query && settings.reference_positions.empty()) {
+    collect(faults, [&] {
+      truth = evaluation::Truth::loops_from_positions(*query, radius_m, unlisted(settings));
+    });
+  } else if (reference && query) {
     collect(faults, [&] {
       truth = evaluation::Truth::from_positions(std::move(*reference), *query, radius_m,
                                                 unlisted(settings));
@@ -72,8 +77,10 @@ void add_truth_options(OptionTable& options, TruthSettings& settings) {
   options.path("reference-positions", Access::reads, settings.reference_positions,
                "truth by where frames were: CSV frame,x,y (metres) or "
                "frame,latitude,longitude (degrees)");
-  options.path("query-positions", Access::reads, settings.query_positions,
-               "likewise, of the queries");
+  options.path(
+      "query-positions", Access::reads, settings.query_positions,
+      "likewise, of the queries; alone: of a drive whose loops are closed, in which earlier frames "
+      "count that the robot had left");
   options.add({"radius", ValueKind::number, "metres by which a match may be off [25]",
                [&settings](std::string_view value) { settings.radius_m = parse_number(value); }});
   options.add(

@@ -18,8 +18,8 @@ namespace seqloop::program {
 struct TruthSettings {
   /// Or `identity`, or `no-revisit`; empty: positions where given, else identity.
   std::filesystem::path file;
-  std::optional<std::size_t> tolerance;  ///< frames; not with positions
-  std::filesystem::path reference_positions;
+  std::optional<std::size_t> tolerance;       ///< frames; not with positions
+  std::filesystem::path reference_positions;  ///< empty beside the query's: loops within it
   std::filesystem::path query_positions;
   std::optional<double> radius_m;
   std::optional<evaluation::Unlisted> unlisted;  ///< wrong, when nobody says
