@@ -4,14 +4,8 @@
 #include <fmt/format.h>
 
 #include "seqloop/detail/trajectories.hpp"
-#include "seqloop/opencv/video_source.hpp"
 
 namespace seqloop::program {
-
-std::optional<std::uint64_t> known_length(const FrameSource& drive) {
-  if (dynamic_cast<const opencv::VideoSource*>(&drive) != nullptr) return {};
-  return drive.frame_count();
-}
 
 void check_length(Faults& faults, const MatcherConfig& config, std::uint64_t frames,
                   std::uint64_t places) {

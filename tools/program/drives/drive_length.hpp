@@ -2,16 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "seqloop/fault.hpp"
-#include "seqloop/frame_source.hpp"
 #include "seqloop/matcher_config.hpp"
 
 namespace seqloop::program {
-
-/// Frames of the drive; nothing where that is not sure: what a video declares may be too few.
-[[nodiscard]] std::optional<std::uint64_t> known_length(const FrameSource& drive);
 
 /// Adds a fault where a drive is so short that no frame could ever be answered.
 /// @param frames of the query drive

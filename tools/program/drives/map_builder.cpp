@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "program/drives/drive_length.hpp"
 #include "program/process/interruption.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
@@ -44,7 +43,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
   std::size_t blank_frames = 0;
   std::optional<VisitFinder> visits;
   if (VisitFinder::is_needed(config)) {
-    const std::uint64_t frames = known_length(drive).value_or(map.capacity());
+    const std::uint64_t frames = drive.frame_count().value_or(map.capacity());
     visits.emplace(
         config, map,
         static_cast<std::size_t>(std::clamp<std::uint64_t>(frames, 1, most_looked_through)));

@@ -12,6 +12,7 @@
 
 #include "program/drives/camera_decoder.hpp"
 #include "program/drives/drive_length.hpp"
+#include "program/drives/known_length.hpp"
 #include "program/drives/live_camera.hpp"
 #include "program/drives/map_builder.hpp"
 #include "program/options/verb.hpp"
