@@ -8,6 +8,7 @@ import bisect
 import json
 import pathlib
 import random
+import re
 import resource
 import signal
 import sqlite3
@@ -42,9 +43,10 @@ class Keeper:
         self.process.kill()
         self.process.wait()
 
-    def end(self) -> None:
+    def end(self, code: int = 0) -> None:
         self.process.send_signal(signal.SIGTERM)
-        expect(self.process.wait(timeout=60) == 0, "the keeper ends when it is asked to")
+        ended = self.process.wait(timeout=60)
+        expect(ended == code, f"the keeper ends when it is asked to, with {code}: {ended}")
 
 
 def places(path: pathlib.Path) -> dict[tuple[int, int], bytes]:
@@ -150,6 +152,24 @@ def full_disk(seqloop: str, work: pathlib.Path) -> None:
     expect(words.count("what was told is saved again") == 2, "each time it says that it goes on: " + words)
 
 
+def ends_on_a_full_disk(seqloop: str, work: pathlib.Path) -> None:
+    """What still waits when a keeper ends is lost, whether there is a file or none: it says so, and fails."""
+    work.mkdir()
+    seen = way(400)
+    for name, room_for_s in (("anna", 0.0), ("bert", 1.0)):
+        keeper = Keeper(seqloop, work)
+        if room_for_s == 0:
+            keeper.let_write(4096)
+        robot = Robot(seqloop, work, name, drive(work, name, seen, 1), f"{name}.seqloop")
+        time.sleep(room_for_s)
+        keeper.let_write(4096)
+        robot.end()
+        time.sleep(1.0)
+        keeper.end(1)
+        last = keeper.said.read_text().splitlines()[-1]
+        expect(re.search(r"not saved of what was told: [1-9]\d* places or more: .*kept.seqloop: .*; ", last), last)
+
+
 def main(seqloop: str, times: int, work: pathlib.Path) -> None:
     print(f"seed {SEED}")
     chance = random.Random(SEED)
@@ -206,4 +226,5 @@ if __name__ == "__main__":
         localises(sys.argv[1], pathlib.Path(folder) / "whole")
         power_cut(sys.argv[1], pathlib.Path(folder) / "cut")
         full_disk(sys.argv[1], pathlib.Path(folder) / "full")
+        ends_on_a_full_disk(sys.argv[1], pathlib.Path(folder) / "end")
         main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

@@ -202,8 +202,9 @@ void Keeper::try_to_begin() {
   }
 }
 
-void Keeper::fail(const char* why) {
-  if (!std::exchange(failing_, true)) news_.emplace_back(why);
+void Keeper::fail(std::string why) {
+  if (failing_.empty()) news_.push_back(why);
+  failing_ = std::move(why);
 }
 
 void Keeper::keep(const dds::FleetPlace& place, Session& session) {
@@ -270,7 +271,7 @@ void Keeper::save() {
       session.links.clear();
       session.statistics.reset();
     }
-    if (!first_ && std::exchange(failing_, false))
+    if (!first_ && !std::exchange(failing_, {}).empty())
       news_.emplace_back("what was told is saved again");
   } catch (const sqlite::SaveError& error) {
     fail(error.what());
@@ -284,7 +285,7 @@ void Keeper::tell(const std::function<bool()>& stop) {
   };
   if (std::ranges::none_of(sessions_, wanted)) return;
   save();
-  if (failing_) return;
+  if (!failing_.empty()) return;
   std::map<std::int64_t, Session*> telling;
   for (Session& session : sessions_) {
     if (wanted(session)) telling[session.id] = &session;
@@ -360,6 +361,17 @@ std::string Keeper::end() {
   const auto sessions = file_->sessions();
   for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
   return fmt::format("{} places of {} sessions are kept", places, sessions.size());
+}
+
+std::string Keeper::unsaved() const {
+  if (failing_.empty()) return {};
+  std::size_t places = first_ ? 1 : 0;
+  for (const Session& session : sessions_) places += session.records.size();
+  // While the disk is full, more may wait in DDS, which nobody has counted.
+  return fmt::format(
+      "not saved of what was told: {} places or more: {}; robots that still run "
+      "tell it again",
+      places, failing_);
 }
 
 }  // namespace seqloop::program

@@ -40,6 +40,8 @@ class Keeper {
 
   /// Saves the rest. @return what is kept, for a person
   [[nodiscard]] std::string end();
+  /// @return what the disk did not take, and why; empty: nothing waits
+  [[nodiscard]] std::string unsaved() const;
 
  private:
   struct Session {
@@ -76,7 +78,7 @@ class Keeper {
   Session& session_in_file(std::uint32_t index);
   void keep(const dds::FleetPlace& place, Session& session);
   void save();
-  void fail(const char* why);
+  void fail(std::string why);
   void tell(const std::function<bool()>& stop);
   [[nodiscard]] bool publish(const dds::FleetPlace& place, const dds::FleetSession* about,
                              const std::function<bool()>& stop);
@@ -95,7 +97,7 @@ class Keeper {
   std::optional<First> first_;  // waits for room on the disk, and so does what comes after it
   std::size_t waiting_ = 0;     // places
   std::chrono::steady_clock::time_point saved_;
-  bool failing_ = false;
+  std::string failing_;  // why the disk takes nothing; empty: it does
   bool refusing_ = false;
   std::vector<std::string> news_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "program/drives/live_topic.hpp"
@@ -36,6 +37,8 @@ void keep(const KeepSettings& settings, Faults faults) {
   const std::string kept = keeper.end();
   for (const std::string& line : keeper.news()) say("{}", line);
   say("{}: {}", settings.map.string(), kept);
+  if (const std::string unsaved = keeper.unsaved(); !unsaved.empty())
+    throw std::runtime_error(unsaved);
 }
 
 }  // namespace
