@@ -147,6 +147,23 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
 }
 
+TEST_F(Serve, TheLastEventCountsTheAnswersOfTheEnd) {
+  start("--source q.npy --pace live --fps 300 --budget-total 10000 --summary s.json");
+  http::test::Client page(port_);
+  page.send("GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  while (page.receive(60'000)) {
+  }
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  const std::string& events = page.received();
+  const std::size_t last = events.rfind("data: ");
+  ASSERT_NE(last, std::string::npos) << events;
+  const std::size_t from = last + 6;
+  const Json status = Json::parse(events.substr(from, events.find('\n', from) - from))["status"];
+  EXPECT_EQ(status["state"], "ended");
+  EXPECT_EQ(status["counts"]["gates"], Json::parse(test::read_all(file("s.json")))["gates"]);
+  EXPECT_EQ(status["frame"]["newest"], lines("r.jsonl").end()[-2]["newest"]) << "it stays";
+}
+
 TEST_F(Serve, NamesBothPlacesThatLookAlike) {
   start(
       "--source q.npy --paper --method seqcnnslam --ds 10 --pace live --fps 100 --budget-total "

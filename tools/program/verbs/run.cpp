@@ -253,7 +253,7 @@ void run(const RunSettings& settings, Faults faults) {
   std::optional<std::string> unsaved;
   if (setup.map) attempt([&] { unsaved = setup.map->finish(detector, rest); });
   const std::span<const Answer> last = numbers.rename(rest);
-  if (serving) serving->watch().publish(last);
+  if (serving) serving->watch().end(last, summary);
   if (ros) ros->publish(last);
   if (fleet && serving) serving->watch().publish(fleet->loops());
   if (fleet && ros) ros->publish(fleet->loops());

@@ -54,6 +54,8 @@ void RunSite::keep_in(LastingMap& map) {
 bool RunSite::looked_at() const { return Clock::now() - looked_at_ < still_looks; }
 
 void RunSite::take() {
+  // Asked first: where it is there, the frames below are all, and none of them undoes it.
+  const RunCounts* last_counts = watch_->last_counts();
   program::take(
       *watch_, frames_, [this](const Snapshot& snapshot) { view_.take(snapshot, seconds_now()); },
       [this](const Answer& answer) {
@@ -64,6 +66,7 @@ void RunSite::take() {
         view_.take(loop);
         return true;
       });
+  if (last_counts != nullptr) view_.take(*last_counts);
   // It goes on while the loop is paused, and tells of no frame.
   if (map_ != nullptr) view_.take_saved(map_->saved());
   watch_->wishes.pictures.store(looked_at(), std::memory_order_relaxed);

@@ -62,6 +62,8 @@ class RunView {
   void take(const Snapshot& snapshot, double now_s);
   void take(const Answer& answer);
   void take(const OtherLoop& loop);
+  /// What the whole run has counted; the newest frame stays what it is.
+  void take(const RunCounts& counts) { newest_.counts = counts; }
   /// @param frames that are on the disk for good, newer than the newest snapshot's
   void take_saved(std::uint64_t frames) { newest_.map.saved = frames; }
 

@@ -18,7 +18,7 @@ void add(StageCounts& stage, Nanoseconds took) noexcept {
 
 }  // namespace
 
-void Watch::count(const ProcessedFrame& processed, const RunSummary& summary) noexcept {
+void Watch::count(const RunSummary& summary) noexcept {
   RunCounts& counts = next_.counts;
   counts.frames = summary.frames();
   for (std::size_t gate = 0; gate < gates; ++gate) {
@@ -30,18 +30,19 @@ void Watch::count(const ProcessedFrame& processed, const RunSummary& summary) no
   counts.dropped = summary.dropped();
   counts.lost = summary.lost();
   counts.overloaded = summary.overloaded();
-  if (processed.report.gate == Gate::no_frame) return;
-  const StageTimes& times = processed.times;
-  add(counts.stages[0], times.grab);
-  add(counts.stages[1], times.describe);
-  add(counts.stages[2], times.match);
-  add(counts.stages[3], times.total);
 }
 
 void Watch::publish(const ProcessedFrame& processed, const LoopState& state,
                     const RunSummary& summary, const MapState& map, Nanoseconds moment) noexcept {
   publish(processed.report.answers);
-  count(processed, summary);
+  count(summary);
+  if (processed.report.gate != Gate::no_frame) {
+    const StageTimes& times = processed.times;
+    add(next_.counts.stages[0], times.grab);
+    add(next_.counts.stages[1], times.describe);
+    add(next_.counts.stages[2], times.match);
+    add(next_.counts.stages[3], times.total);
+  }
   next_.frame = processed;
   next_.frame.frame.image = {};
   next_.frame.frame.descriptor = {};
@@ -62,6 +63,12 @@ void Watch::publish(std::span<const Answer> answers) noexcept {
   for (const Answer& answer : answers) {
     if (!answers_.push(answer)) unseen_.fetch_add(1, std::memory_order_relaxed);
   }
+}
+
+void Watch::end(std::span<const Answer> answers, const RunSummary& summary) noexcept {
+  publish(answers);
+  count(summary);
+  ended_.store(true, std::memory_order_release);
 }
 
 void Watch::publish(std::span<const OtherLoop> loops) noexcept {

@@ -80,8 +80,9 @@ class Watch {
   /// @param moment now, on the loop's clock: pictures for who looks come ten times a second
   void publish(const ProcessedFrame& processed, const LoopState& state, const RunSummary& summary,
                const MapState& map, Nanoseconds moment) noexcept;
-  /// Answers that were due at the end.
   void publish(std::span<const Answer> answers) noexcept;
+  /// Answers that were due at the end, and what they make of the counts. No frame comes after it.
+  void end(std::span<const Answer> answers, const RunSummary& summary) noexcept;
   /// Loops with other robots.
   void publish(std::span<const OtherLoop> loops) noexcept;
 
@@ -94,13 +95,17 @@ class Watch {
   [[nodiscard]] Answers& answers() noexcept { return answers_; }
   [[nodiscard]] Loops& loops() noexcept { return loops_; }
   [[nodiscard]] Pictures& pictures() noexcept { return pictures_; }
+  /// What the whole run has counted; null while it goes on. Once it is there, all frames are.
+  [[nodiscard]] const RunCounts* last_counts() const noexcept {
+    return ended_.load(std::memory_order_acquire) ? &next_.counts : nullptr;
+  }
   /// Frames, answers and loops that found no room.
   [[nodiscard]] std::uint64_t unseen() const noexcept { return unseen_; }
 
   Wishes wishes;
 
  private:
-  void count(const ProcessedFrame& processed, const RunSummary& summary) noexcept;
+  void count(const RunSummary& summary) noexcept;
   void publish_picture(const ProcessedFrame& processed, Nanoseconds moment) noexcept;
 
   Frames frames_;
@@ -108,6 +113,7 @@ class Watch {
   Loops loops_;
   Pictures pictures_;
   std::atomic<std::uint64_t> unseen_{0};
+  std::atomic<bool> ended_{false};
 
   // The loop's.
   Snapshot next_;
