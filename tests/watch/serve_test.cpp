@@ -164,6 +164,17 @@ TEST_F(Serve, TheLastEventCountsTheAnswersOfTheEnd) {
   EXPECT_EQ(status["frame"]["newest"], lines("r.jsonl").end()[-2]["newest"]) << "it stays";
 }
 
+TEST_F(Serve, IsWellAfterAPause) {
+  start("--source q.npy --pace live --fps 40 --budget-total 10000");
+  ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 5; }));
+  ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
+  std::this_thread::sleep_for(11s);  // longer than it bears no frame
+  ASSERT_TRUE(post("/api/control", {{"do", "resume"}}).starts_with("HTTP/1.1 200"));
+  for (int n = 0; n < 20; ++n) EXPECT_TRUE(get("/healthz").ends_with("\r\n\r\nok\n")) << n;
+  EXPECT_TRUE(post("/api/control", {{"do", "stop"}}).starts_with("HTTP/1.1 200"));
+  EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+}
+
 TEST_F(Serve, NamesBothPlacesThatLookAlike) {
   start(
       "--source q.npy --paper --method seqcnnslam --ds 10 --pace live --fps 100 --budget-total "

@@ -306,6 +306,21 @@ TEST(RunView, IsIllWithoutFramesAndOverItsBudget) {
   EXPECT_EQ(view.trouble(124.0), "");
 }
 
+TEST(RunView, APauseIsNoTrouble) {
+  RunView view(Json::object());
+  const auto snapshot = std::make_unique<Snapshot>();
+  view.pause(50.0);
+  EXPECT_EQ(view.trouble(100.0), "") << "no frame has been due";
+  snapshot->frame.report.gate = Gate::match;
+  snapshot->state.overloaded = true;
+  view.take(*snapshot, 100.0);
+  view.pause(130.0);
+  EXPECT_EQ(view.trouble(130.1), "");
+  EXPECT_EQ(view.trouble(141.0), "no frame for 11 seconds") << "after it, the camera is gone";
+  view.take(*snapshot, 141.0);
+  EXPECT_EQ(view.trouble(141.0), "") << "over the budget since now";
+}
+
 TEST(Metrics, BucketsAddUp) {
   WatchedLoop loop;
   for (std::uint64_t n = 0; n < 20; ++n) loop.frame(n);

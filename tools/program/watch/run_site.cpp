@@ -67,6 +67,7 @@ void RunSite::take() {
         return true;
       });
   if (last_counts != nullptr) view_.take(*last_counts);
+  if (watch_->wishes.pause.load(std::memory_order_relaxed)) view_.pause(seconds_now());
   // It goes on while the loop is paused, and tells of no frame.
   if (map_ != nullptr) view_.take_saved(map_->saved());
   watch_->wishes.pictures.store(looked_at(), std::memory_order_relaxed);

@@ -106,6 +106,11 @@ double RunView::time_of(std::uint64_t frame) const {
   return found == times_s_.end() || found->first != frame ? std::nan("") : found->second;
 }
 
+void RunView::pause(double now_s) {
+  if (frame_at_s_) frame_at_s_ = now_s;
+  over_since_s_.reset();
+}
+
 std::string RunView::trouble(double now_s) const {
   if (frame_at_s_ && now_s - *frame_at_s_ > patience_s) {
     return fmt::format("no frame for {:.0f} seconds", now_s - *frame_at_s_);

@@ -67,6 +67,9 @@ class RunView {
   /// @param frames that are on the disk for good, newer than the newest snapshot's
   void take_saved(std::uint64_t frames) { newest_.map.saved = frames; }
 
+  /// The run is paused: no frame is due, and no time counts as trouble.
+  void pause(double now_s);
+
   /// Since when nothing has come, or the budget has been missed. @return why the run is ill; empty
   /// where it is well
   [[nodiscard]] std::string trouble(double now_s) const;
