@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// Usage: page_test.cjs BROWSER FILE TOKEN page|map|twins [FOLDER FOR SCREENSHOTS]
+// Usage: page_test.cjs BROWSER FILE TOKEN page|map|twins|again [FOLDER FOR SCREENSHOTS]
 //   FILE will hold the page's address; FILE.wanted is made when the browser is there to look at it
 //   map: of a run with a map that lasts, whose first session is `<i>monday`
 //   twins: of a run whose places all look alike
+//   again: of a run that is killed when the page has made FILE.again, and begun anew at its address with a drive that
+//   is called `later` and begins later
 const fs = require('node:fs');
 const {assert, open, noSeriousFaults, noSidewaysScroll, start} = require('./browser.cjs');
 
@@ -53,6 +55,37 @@ async function showsTwins(page, folder) {
   }
 }
 
+/// Of a run that was killed nothing stays when another one is at its address, whose loops have the same numbers.
+async function comesBack(page, url, file, token) {
+  const wanted = {timeout: 120000};
+  await page.waitForFunction(() => view.status && view.status.loops.listed >= 30 && view.dots.length > 0, null, wanted);
+  await page.click('#pause');
+  await page.waitForFunction(() => view.status.state === 'paused' && list.count === view.status.loops.listed &&
+    Number(document.querySelector('#loops li')?.dataset.loop) === list.count - 1, null, wanted);
+  const before = await page.evaluate(() => { pick(view.dots[0]); return list.count; });
+  await page.context().setOffline(true);
+  fs.writeFileSync(file + '.again', '');
+  // What the other run says, as far as it can be reached.
+  const status = () => fetch(url + '/api/status').then((reply) => reply.json()).catch(() => null);
+  for (let now = null; !now || !now.run.source.endsWith('later') || now.loops.listed < before; now = await status()) {
+    await new Promise((done) => setTimeout(done, 20));
+  }
+  const paused = await fetch(url + '/api/control', {method: 'POST', body: '{"do": "pause"}',
+    headers: {'Content-Type': 'application/json', 'Authorization': 'Bearer ' + token}});
+  assert.strictEqual(paused.status, 200);
+  await page.context().setOffline(false);
+  await page.waitForFunction(() => view.status && view.status.run.source.endsWith('later') &&
+    list.count === view.status.loops.listed &&
+    Number(document.querySelector('#loops li')?.dataset.loop) === list.count - 1, null, wanted);
+  const {loops} = await page.evaluate(() => ask(`/api/loops?first=${list.count - 12}&count=12`));
+  const texts = await page.$$eval('#loops li > p:first-of-type', (all) => all.map((one) => one.textContent));
+  assert.deepStrictEqual(texts.map((text) => text.match(/frame \d+ is place \d+/)[0]),
+    loops.reverse().map((loop) => `frame ${loop.frame} is place ${loop.match}`));
+  assert.deepStrictEqual(await page.evaluate(() => [view.picked, byId('picked').hidden]), [null, true]);
+  await page.locator('#loops li').first().getByRole('button', {name: /^accept/}).click();
+  await page.waitForSelector('#loops li.accepted');
+}
+
 async function stops(page, browser) {
   assert.deepStrictEqual(page.complaints(), []);
   page.on('dialog', (dialog) => dialog.accept());
@@ -75,6 +108,10 @@ async function main([path, file, token, mode, folder]) {
   assert.strictEqual(await page.evaluate(() => location.hash), '', 'the token is in no address any more');
   if (mode === 'twins') {
     await showsTwins(page, folder);
+    return stops(page, browser);
+  }
+  if (mode === 'again') {
+    await comesBack(page, url, file, token);
     return stops(page, browser);
   }
   await page.waitForFunction(() => view.status && view.status.counts.frames >= 100, null, {timeout: 120000});

@@ -142,6 +142,17 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_TRUE(until([](const Json& now) { return now["counts"]["gates"]["match"] > 0; }))
       << "the new threshold holds";
   EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", "accepted"}}), "200");
+  const Json loop = json(get("/api/loops?first=0&count=1"))["loops"][0];
+  Json verdict{
+      {"loop", 0}, {"frame", loop["frame"]}, {"match", loop["match"]}, {"verdict", "accepted"}};
+  EXPECT_EQ(answered("/api/verdict", verdict), "200");
+  for (const char* key : {"frame", "match"}) {
+    Json other = verdict;
+    other[key] = loop[key].get<int>() + 1;
+    EXPECT_EQ(answered("/api/verdict", other), "409") << "a loop of an earlier run: " << key;
+    other[key] = "none";
+    EXPECT_EQ(answered("/api/verdict", other), "400") << key;
+  }
   EXPECT_NE(get("/api/truth.csv").find("query,reference\n"), std::string::npos);
   EXPECT_EQ(answered("/api/control", {{"do", "stop"}}), "200");
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));

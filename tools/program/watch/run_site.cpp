@@ -157,6 +157,7 @@ std::string RunSite::trouble() const {
 
 Json RunSite::status() const {
   Json json;
+  json["id"] = id_;
   const bool paused = watch_->wishes.pause.load(std::memory_order_relaxed);
   json["state"] = ended_ ? "ended" : paused ? "paused" : "running";
   json.update(view_.status());
@@ -319,6 +320,12 @@ http::Reply RunSite::judge(const Json& wish) {
   if (!wish.contains("loop") || !wish["loop"].is_number_unsigned())
     return fault(400, "loop is the number of a loop");
   const auto number = wish["loop"].get<std::size_t>();
+  if (number < view_.loop_count()) {
+    const Loop& loop = view_.loop_list()[number];
+    if (wish.value("frame", loop.frame) != loop.frame ||
+        wish.value("match", loop.match) != loop.match)
+      return fault(409, "that number is another loop's in this run; load the page anew");
+  }
   if (!view_.judge(number, verdict)) {
     return fault(404, number < view_.loop_count() ? "it is a loop with another robot's place"
                                                   : "there is no such loop");

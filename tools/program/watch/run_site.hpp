@@ -82,6 +82,9 @@ class RunSite : public http::Site {
 
   Watch* watch_;
   LastingMap* map_ = nullptr;
+  /// When it was made, in ns: a page that comes back sees whether this is still its run. JSON's
+  /// numbers are too short for it in a browser.
+  std::string id_ = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
   bool own_places_;
   std::unique_ptr<PlacePictures> saved_places_;  // not guarded: it takes care of itself
   const http::Server* server_ = nullptr;

@@ -90,7 +90,7 @@ function loopItem(loop) {
         'aria-label': `${word} loop ${loop.number + 1}`}, word);
       button.onclick = async () => {
         const wanted = loop.verdict === verdict ? 'none' : verdict;
-        if (!await change('/api/verdict', {loop: loop.number, verdict: wanted})) return;
+        if (!await change('/api/verdict', {loop: loop.number, frame: loop.frame, match: loop.match, verdict: wanted})) return;
         loop.verdict = wanted === 'none' ? null : wanted;
         item.replaceWith(loopItem(loop));
       };

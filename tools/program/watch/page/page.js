@@ -185,6 +185,8 @@ function listen() {
   events.onopen = () => { first = true; };
   events.onmessage = async (event) => {
     const news = JSON.parse(event.data);
+    // Another run at the same address: all that is here is of the one before.
+    if (view.status && view.status.id !== news.status.id) return location.reload();
     view.status = news.status;
     // What was before, and what a slow line has missed.
     if (first || takeNews(news)) {
