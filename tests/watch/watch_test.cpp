@@ -224,6 +224,23 @@ TEST(RunView, VerdictsBecomeATruth) {
   EXPECT_EQ(view.loops(2, 1)["loops"][0]["verdict"], "rejected");
 }
 
+TEST(RunView, NamesOfMarksEndWithAWholeCharacter) {
+  RunView view(Json::object());
+  view.take(*std::make_unique<Snapshot>(), 0.0);
+  const std::string most(RunView::most_name, 'a');
+  EXPECT_TRUE(view.mark(most + "b"));
+  for (const char* door : {"\u00FC", "\u20AC", "\U0001F6AA"}) {
+    for (std::size_t before = most.size() - 4; before < most.size(); ++before) {
+      EXPECT_TRUE(view.mark(most.substr(0, before) + door + door));
+    }
+  }
+  const Json marks = view.marks();
+  EXPECT_EQ(marks[0]["name"], most);
+  EXPECT_EQ(marks[1]["name"], most.substr(4) + "\u00FC\u00FC");
+  EXPECT_EQ(marks[4]["name"], most.substr(1)) << "no half of it";
+  EXPECT_NO_THROW(static_cast<void>(marks.dump())) << "which takes UTF-8 alone";
+}
+
 TEST(RunView, LoopsWithOtherRobotsAreNamedByRobot) {
   RunView view(Json::object());
   const auto snapshot = std::make_unique<Snapshot>();

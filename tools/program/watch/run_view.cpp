@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "program/process/milliseconds.hpp"
+#include "program/process/utf8.hpp"
 #include "program/run/frame_json.hpp"
 
 namespace seqloop::program {
@@ -249,7 +250,9 @@ bool RunView::judge(std::size_t loop, Verdict verdict) {
 
 bool RunView::mark(std::string_view name) {
   if (marks_.size() == most_marks || frames_seen_ == 0) return false;
-  marks_.push_back({newest_.frame.report.newest, std::string(name.substr(0, most_name))});
+  name = name.substr(0, most_name);
+  while (!is_utf8(name)) name.remove_suffix(1);  // no character is cut in two
+  marks_.push_back({newest_.frame.report.newest, std::string(name)});
   return true;
 }
 
