@@ -131,6 +131,14 @@ def power_cut(seqloop: str, work: pathlib.Path) -> None:
     expect(len({began for began, _ in kept}) == runs, "a session for each time that it was switched on")
 
 
+def refuses(seqloop: str, folder: pathlib.Path) -> None:
+    """What is told would wait for a file that can never be made."""
+    refused = subprocess.run([seqloop, "keep", "--map", folder / "none" / "kept.seqloop", "--fleet", "none"],
+                             capture_output=True, text=True)
+    expect(refused.returncode == 2 and "none is no folder" in refused.stderr,
+           f"a map in no folder is refused: {refused.returncode}, {refused.stderr}")
+
+
 def full_disk(seqloop: str, work: pathlib.Path) -> None:
     """Where there is no room for a file, and later none for a session, the keeper waits, and then has all."""
     work.mkdir()
@@ -225,6 +233,7 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         localises(sys.argv[1], pathlib.Path(folder) / "whole")
         power_cut(sys.argv[1], pathlib.Path(folder) / "cut")
+        refuses(sys.argv[1], pathlib.Path(folder))
         full_disk(sys.argv[1], pathlib.Path(folder) / "full")
         ends_on_a_full_disk(sys.argv[1], pathlib.Path(folder) / "end")
         main(sys.argv[1], int(sys.argv[2]), pathlib.Path(folder))

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -20,7 +21,13 @@ struct KeepSettings {
 
 void keep(const KeepSettings& settings, Faults faults) {
   take_interruptions();
-  if (settings.map.empty()) faults.push_back({"map", "there is none", "--map FILE"});
+  if (settings.map.empty()) {
+    faults.push_back({"map", "there is none", "--map FILE"});
+  } else if (const auto folder = std::filesystem::absolute(settings.map).parent_path();
+             !std::filesystem::is_directory(folder)) {
+    // Told by then, a fleet's places would wait for it to the end.
+    faults.push_back({"map", folder.string() + " is no folder", "make it, or name another file"});
+  }
   if (settings.fleet.name.empty()) faults.push_back({"fleet", "there is none", "--fleet NAME"});
   check(settings.fleet, true, false, faults);
   if (!(settings.save_every_s > 0.0 && settings.save_every_s <= 3600.0)) {
