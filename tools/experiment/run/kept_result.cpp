@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files/text_file.hpp"
+#include "program/process/json_text.hpp"
 #include "seqloop/files/output_file.hpp"
 
 namespace seqloop::experiment {
@@ -77,7 +78,7 @@ void keep_result(const Result& result, const std::filesystem::path& file) {
     json["reliability"].push_back({bin.count, bin.right, bin.probability_sum});
   }
   files::OutputFile out(file);
-  out.write(json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
+  out.write(program::json_text(json, 1) + '\n');
   out.commit();
 }
 

@@ -52,9 +52,7 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
     faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
                       "leave one of them out"});
   }
-  if (!is_utf8(settings.robot)) {
-    faults.push_back({"robot", "its name is not UTF-8, as JSON wants it", "give it another"});
-  }
+  check_name(faults, "robot", settings.robot);
   if (!(settings.kbps >= 0.0)) faults.push_back({"fleet-kbps", "it must be 0 (no limit) or more"});
   if (settings.places == 0 || settings.places > most_fleet_places) {
     faults.push_back({"fleet-places", "it must be 1 to " + std::to_string(most_fleet_places)});

@@ -10,6 +10,7 @@
 
 #include "program/fleet/place_number.hpp"
 #include "program/fleet/round_time.hpp"
+#include "program/process/json_text.hpp"
 #include "program/process/say.hpp"
 #include "seqloop/place_map.hpp"
 
@@ -235,8 +236,7 @@ Keeper::Session& Keeper::session_in_file(std::uint32_t index) {
     name = fmt::format("{}-{}", title, more++);
   }
   const Json settings{{"robot", session.names.robot}, {"session", session.names.session}};
-  session.id = file_->begin_session(name, session.names.began_ns,
-                                    settings.dump(-1, ' ', false, Json::error_handler_t::replace));
+  session.id = file_->begin_session(name, session.names.began_ns, json_text(settings));
   news_.push_back(fmt::format("what robot '{}' tells of session '{}' is kept as '{}'",
                               session.names.robot, session.names.session, name));
   heard_as_[index] = sessions_.size();

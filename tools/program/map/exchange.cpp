@@ -16,6 +16,7 @@
 #include "files/output_folder.hpp"
 #include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
+#include "program/process/json_text.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -208,8 +209,7 @@ void export_map(const MapFile& map, const fs::path& folder) {
     numbers.emplace(facts.id, static_cast<std::int64_t>(numbers.size()) + 1);
     json["sessions"].push_back(described(map, facts));
   }
-  // Names of sessions may be no UTF-8: a keeper takes them as robots tell them.
-  out.write("map.json", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  out.write("map.json", json_text(json, 2) + '\n');
 
   std::string table = std::string(places_header) + '\n';
   std::map<std::int64_t, std::pair<std::string, std::uint64_t>> open;  // bytes and rows

@@ -52,9 +52,7 @@ void check(const MapSettings& settings, bool reference, Faults& faults) {
     faults.push_back({"session", "nothing is added to a map that is only read",
                       "leave --session or --read-only out"});
   }
-  if (!is_utf8(settings.session)) {
-    faults.push_back({"session", "its name is not UTF-8, as JSON wants it", "give it another"});
-  }
+  check_name(faults, "session", settings.session);
   if (!(settings.save_every_s > 0.0 && settings.save_every_s <= 3600.0)) {
     faults.push_back({"save-every-s", "it must be above 0 and at most 3600"});
   }

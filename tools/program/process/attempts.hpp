@@ -33,6 +33,7 @@ class Attempts {
 
   /// Something has failed that throws nothing. @param why a line
   void fail(std::string why) { failures_.push_back(std::move(why)); }
+  void fail(Fault fault) { faults_.push_back(std::move(fault)); }
 
   /// Throws what has failed: SetupError where all of it is, or the last failure, with the others
   /// said before.

@@ -35,4 +35,10 @@ bool is_utf8(std::string_view text) noexcept {
   return true;
 }
 
+void check_name(Faults& faults, const char* what, std::string_view name) {
+  if (!is_utf8(name)) {
+    faults.push_back({what, "its name is not UTF-8, as JSON wants it", "give it another"});
+  }
+}
+
 }  // namespace seqloop::program

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "seqloop/fault.hpp"
+
 namespace seqloop::program {
 
 /// A character that was read.
@@ -17,5 +19,8 @@ struct Character {
 
 /// Whether all of a text is UTF-8.
 [[nodiscard]] bool is_utf8(std::string_view text) noexcept;
+
+/// Adds a fault where a name cannot stand in JSON. @param what has it
+void check_name(Faults& faults, const char* what, std::string_view name);
 
 }  // namespace seqloop::program

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "program/process/json_text.hpp"
+
 namespace seqloop::program {
 
 void FrameLines::add(const ProcessedFrame& processed, const LoopState& state) {
@@ -31,7 +33,7 @@ void FrameLines::write() {
   auto line = std::exchange(line_, std::nullopt);
   if (map_ != nullptr) map_->add_to(*line);
   // A file name in a message may be no UTF-8.
-  out_->write(line->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+  out_->write(json_text(*line) + '\n');
   out_->flush();
 }
 

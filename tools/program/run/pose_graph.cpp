@@ -107,11 +107,9 @@ std::vector<std::string> PoseGraph::notes() const {
 
 void PoseGraph::commit(Attempts& attempt) {
   if (vertices_.empty()) {
-    attempt([] {
-      throw SetupError({"odometry", "no frame of the drive lies within its times",
-                        "its times must be those of the drive: a bag's stamps, or seconds from its "
-                        "first frame"});
-    });
+    attempt.fail(Fault{"odometry", "no frame of the drive lies within its times",
+                       "its times must be those of the drive: a bag's stamps, or seconds from its "
+                       "first frame"});
     return;
   }
   if (graph_) attempt([this] { write_graph(); });

@@ -6,6 +6,7 @@
 
 #include "program/options/loop_options.hpp"
 #include "program/process/build_info.hpp"
+#include "program/process/json_text.hpp"
 #include "program/process/milliseconds.hpp"
 
 namespace seqloop::program {
@@ -89,7 +90,7 @@ std::string run_report(const RunSummary& summary, const RunConditions& condition
   }
   json["page_faults"] = {{"minor", conditions.cost.minor_faults},
                          {"major", conditions.cost.major_faults}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json, 2) + '\n';
 }
 
 }  // namespace seqloop::program

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/process/json_text.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/bags/bag.hpp"
 
@@ -37,7 +38,7 @@ void print_json(const bags::BagFacts& facts, const std::vector<std::string>& not
   }
   json["notes"] = notes;
   // A bag's names may be no UTF-8.
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(json, 2));
 }
 
 void print_table(const bags::BagFacts& facts, const std::vector<std::string>& notes) {

@@ -10,6 +10,7 @@
 #include "program/map/merge.hpp"
 #include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
+#include "program/process/json_text.hpp"
 #include "program/process/outputs.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
@@ -72,7 +73,7 @@ void info(const MapSettings& settings) {
                                       {"thumbnails", thumbnails.count},
                                       {"thumbnail_bytes", thumbnails.bytes},
                                       {"sessions", list}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json, 2));
     return;
   }
   std::string text = fmt::format(

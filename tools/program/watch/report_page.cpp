@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "program/process/json_text.hpp"
 #include "program/watch/page_files.hpp"
 #include "program/watch/run_view.hpp"
 
@@ -127,7 +128,7 @@ class Lines {
 /// JSON that ends no script element, whatever the names in it.
 std::string in_a_page(const Json& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : json_text(json)) {
     if (c == '<')
       text += "\\u003c";
     else

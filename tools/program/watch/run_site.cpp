@@ -6,6 +6,7 @@
 
 #include "program/process/available_memory.hpp"
 #include "program/process/build_info.hpp"
+#include "program/process/json_text.hpp"
 #include "program/watch/metrics.hpp"
 #include "program/watch/page_files.hpp"
 #include "program/watch/query.hpp"
@@ -24,8 +25,7 @@ constexpr auto still_looks = 3s;  // who has not asked for so long has gone
 
 http::Reply json_reply(const Json& json, int status = 200) {
   // Names of files may be no UTF-8.
-  return {status, "application/json",
-          json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n'};
+  return {status, "application/json", json_text(json) + '\n'};
 }
 
 http::Reply fault(int status, std::string_view why) { return json_reply({{"error", why}}, status); }
@@ -97,8 +97,7 @@ void RunSite::tell() {
   choose_shown();
   Json json = view_.event(told_frames_, told_answers_);
   json["status"] = status();
-  event_ = std::make_shared<const std::string>(
-      "data: " + json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n");
+  event_ = std::make_shared<const std::string>("data: " + json_text(json) + "\n\n");
   ++event_number_;
   told_frames_ = view_.frames_seen();
   told_answers_ = view_.answers_seen();
@@ -140,8 +139,7 @@ std::shared_ptr<const std::string> RunSite::event(std::uint64_t& last) {
     choose_shown();
     Json json = view_.event(told_frames_, told_answers_);
     json["status"] = status();
-    return std::make_shared<const std::string>(
-        "retry: 2000\ndata: " + json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n");
+    return std::make_shared<const std::string>("retry: 2000\ndata: " + json_text(json) + "\n\n");
   }
   told_.wait_for(lock, 1s, [&] { return event_number_ > last; });
   looked_at_ = Clock::now();
