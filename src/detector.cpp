@@ -193,9 +193,14 @@ void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noe
   const bool carried_on = pending_.jumps() > 0.0 && steps_.is_isolated(answer.frame);
   if (!settled && steps_.repeats(answer.frame) && (too_early || carried_on)) {
     told.probability = std::min(told.probability, in_doubt);
-    if (told.gate == Gate::match && !pending_.accepts(told.probability)) told.gate = Gate::unsure;
   }
   if (!told.match) return;
+  // What is accepted may have changed, too, since the answer was given for the step's first frames.
+  if (pending_.accepts(told.probability)) {
+    told.gate = Gate::match;
+  } else if (told.gate == Gate::match) {
+    told.gate = Gate::unsure;
+  }
   const auto stop = steps_.stop_at(answer.frame);
   const StopFrame at = answered_.at(*map_, stop, frame, told.match->place);
   told.match->place = at.place;

@@ -320,6 +320,36 @@ TEST(Keyframes, LetARobotThatStandsForLongGoOnKnowing) {
   EXPECT_GT(behind, 120U) << "of 150";
 }
 
+// The answer of the keyframe that the robot stands at has been given long ago; those of the frames
+// that show the same have not.
+TEST(Keyframes, AreAcceptedFromWhatHoldsWhenTheirAnswersAreGiven) {
+  const Vectors known = test::way(1, 300, 0.3F, 1);
+  const Vectors stops = with_stop(test::way(1, 300, 0.3F, 2), 150, 400);
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  Detector detector(config, map);
+  std::array<std::size_t, 2> accepted{};
+  std::array<std::size_t, 2> refused{};
+  float least = config.min_probability;
+  for (std::size_t frame = 0; frame < 500; ++frame) {
+    if (frame >= 300 && frame % 25 == 0) {
+      least = frame % 50 == 0 ? 1.0F : 0.5F;
+      detector.accept_from(least);
+    }
+    for (const Answer& answer : detector.step(stops[frame]).answers) {
+      EXPECT_EQ(answer.gate == Gate::match, answer.match && answer.probability >= least)
+          << answer.frame << " with frame " << frame;
+      if (frame < 300) continue;
+      const bool all = least == 1.0F;
+      (answer.gate == Gate::match ? accepted : refused)[all ? 1 : 0] += 1;
+    }
+  }
+  EXPECT_GE(accepted[0], 100U);
+  EXPECT_EQ(refused[0], 0U);
+  EXPECT_GE(accepted[1] + refused[1], 100U);
+  EXPECT_GE(refused[1], 100U) << "nothing is that sure";
+}
+
 /// A robot that is carried to another place in one frame, and stands there.
 TEST(Keyframes, LetNoRobotThatWasCarriedAwayAndStandsBelieveItsLastPlace) {
   const Vectors known = test::way(1, 300, 0.3F, 1);
