@@ -86,8 +86,9 @@ std::size_t answers_kept(const MatcherConfig& config) {
 /// (Algorithm 1) or all zero. One that is not would spoil the running statistics for the rest of
 /// the drive.
 bool well_formed(std::span<const float> values, const MatcherConfig& config) {
-  if (blank(config.difference, values)) return !config.blank_is_unreadable;
   const double squares = squared_norm(values);
+  if (blank(config.difference, values))
+    return !config.blank_is_unreadable && std::isfinite(squares);
   if (config.difference == Difference::mean_absolute) return std::isfinite(squares);
   constexpr double tolerance = 0.01;
   return std::abs(squares - 1.0) <= tolerance;

@@ -232,6 +232,20 @@ TEST(Detector, PatchesNeedNotBeUnitButFiniteAndNotBlank) {
   EXPECT_EQ(detector.step(patches).gate, Gate::frame_error);
 }
 
+// Infinite all over, it is as flat as a grey wall.
+TEST(Detector, WhatIsNotFiniteIsNoBlankFrame) {
+  MatcherConfig config = paper(Candidates::all, 5);
+  config.difference = Difference::mean_absolute;
+  PlaceMap map = map_of(oracle::drive(6, 60, 16), config);
+  Detector detector(config, map);
+  for (const float value :
+       {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+        std::numeric_limits<float>::quiet_NaN()}) {
+    EXPECT_EQ(detector.step(std::vector<float>(16, value)).gate, Gate::frame_error) << value;
+  }
+  EXPECT_EQ(detector.step(std::vector<float>(16, 127.5F)).gate, Gate::warming_up);
+}
+
 TEST(Detector, SpreadsTheExhaustiveWorkEvenly) {
   for (const FrameReport& report :
        reports(oracle::drive(4, 70, 8), oracle::drive(4, 60, 8), paper(Candidates::all, 20))) {
