@@ -273,7 +273,8 @@ FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   }
   const std::size_t before = pending_.answers().size();
   FrameReport report = match_centre(newest, readable);
-  if (report.frame && report.gate != Gate::warming_up) {
+  // Before the window is whole there is none, not even where the newest frame cannot be read.
+  if (newest >= window_began_ + config_.sequence_length) {
     pending_.say(
         {*report.frame, report.gate, std::numeric_limits<float>::quiet_NaN(), report.match});
   }

@@ -63,8 +63,10 @@ struct Work {
   bool operator==(const Work&) const = default;
 };
 
-/// What is said of one frame in the end: there is one for each frame that was stepped; by
-/// uniqueness none for the first ds/2 of a window that begins anew, and the last ds - ds/2.
+/// What is said of one frame in the end: there is one for each frame that was stepped. By
+/// uniqueness each step of a whole window answers its centre frame, even one that never came: none
+/// is for the first ds/2 of a window that begins anew, for the last ds - ds/2, and for those whose
+/// turn it is with frames that never come.
 struct Answer {
   std::uint64_t frame = 0;  ///< counted from 0
   Gate gate = Gate::frame_error;

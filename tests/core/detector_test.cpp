@@ -388,6 +388,26 @@ TEST(Detector, ByUniquenessTheCentreFrameIsTheOneAnswer) {
   EXPECT_TRUE(detector.finish().empty());
 }
 
+TEST(Detector, ByUniquenessAWindowThatIsNotWholeHasNoAnswer) {
+  const oracle::Vectors drive = oracle::drive(2, 120, 30);
+  PlaceMap map = map_of(drive, paper(Candidates::all, 10));
+  Detector detector(paper(Candidates::all, 10), map);
+  std::vector<std::uint64_t> answered;
+  for (std::size_t frame = 0; frame < 60; ++frame) {
+    const bool bad = frame % 3 == 1;
+    if (frame == 30) detector.skip(100);
+    for (const Answer& answer :
+         detector.step(bad ? std::span<const float>() : drive[frame]).answers) {
+      answered.push_back(answer.frame);
+    }
+  }
+  std::vector<std::uint64_t> wanted;
+  for (std::uint64_t frame = 5; frame < 55; ++frame) {
+    if (frame < 25 || frame >= 35) wanted.push_back(frame);
+  }
+  EXPECT_EQ(answered, wanted);
+}
+
 TEST(Detector, SameInputSameReports) {
   const oracle::Vectors drive = two_laps(2, 120, 30);
   MatcherConfig config;
