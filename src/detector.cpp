@@ -320,6 +320,8 @@ std::span<const Answer> Detector::finish() noexcept {
   report.answers = pending_.answers();
   if (!told_.empty() && end > 0) tell(report, pending_.answers());
   restart();
+  // Frames that do not come before the next one are none of what has ended.
+  skipped_ = config_.sequence_length + 1;
   pending_.forget_jumps();
   return report.answers;
 }

@@ -185,6 +185,22 @@ TEST(Detector, GapsOfNothingAndBeforeTheFirstFrameAreNone) {
   EXPECT_EQ(frames.step(drive[9]).match->place, 9U);
 }
 
+TEST(Detector, AGapBetweenTwoRecordingsIsOfNeither) {
+  const oracle::Vectors drive = oracle::drive(3, 60, 16);
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.keyframes = false;
+  PlaceMap map(config, {100, 16});
+  Detector detector(config, map);
+  for (const auto& seen : drive) static_cast<void>(detector.step(seen));
+  static_cast<void>(detector.finish());
+  detector.skip(3);
+  EXPECT_EQ(map.size(), 60U) << "nothing was seen there";
+  EXPECT_EQ(detector.step(drive[0]).newest, 60U);
+  detector.skip(3);
+  EXPECT_EQ(detector.step(drive[1]).newest, 64U);
+}
+
 TEST(Detector, ADescriptorThatIsNotUnitDoesNotSpoilTheStatistics) {
   const oracle::Vectors drive = oracle::drive(6, 200, 16, 0.1F);
   MatcherConfig config;
