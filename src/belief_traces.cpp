@@ -37,8 +37,8 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
   return back;
 }
 
-void BeliefTraces::removed(std::size_t row) noexcept {
-  for (Traced& at : steps_) count_without(row, at.row);
+void BeliefTraces::removed(std::size_t row, bool forgotten) noexcept {
+  for (Traced& at : steps_) count_without(row, forgotten, at.row);
 }
 
 void BeliefTraces::inserted(std::size_t row) noexcept {

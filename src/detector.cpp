@@ -487,8 +487,8 @@ bool Detector::become_place() noexcept {
     ranges_.removed(*taken.removed);
     proposals_.removed(*taken.removed);
     decision_.removed(*taken.removed);
-    belief_.removed(*taken.removed);
-    pending_.removed(*taken.removed);
+    belief_.removed(*taken.removed, taken.forgotten);
+    pending_.removed(*taken.removed, taken.forgotten);
   }
   return taken.slot.has_value();
 }

@@ -433,14 +433,14 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
           number(row, static_cast<std::int64_t>(after_centre_))};
 }
 
-void PendingAnswers::removed(std::size_t row) noexcept {
+void PendingAnswers::removed(std::size_t row, bool forgotten) noexcept {
   for (Waiting& waiting : waiting_) {
-    count_without(row, waiting.row);
-    count_without(row, waiting.likeliest);
+    count_without(row, forgotten, waiting.row);
+    count_without(row, forgotten, waiting.likeliest);
     // Where the robot was can be named no more.
     waiting.believed = waiting.believed && waiting.row != none;
   }
-  for (FoundLine& line : lines_) count_without(row, line.row);
+  for (FoundLine& line : lines_) count_without(row, forgotten, line.row);
 }
 
 void PendingAnswers::inserted(std::size_t row) noexcept {

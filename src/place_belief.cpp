@@ -481,13 +481,13 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
   }
 }
 
-void PlaceBelief::removed(std::size_t row) noexcept {
+void PlaceBelief::removed(std::size_t row, bool forgotten) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
     if (at.row > row) --at.row;
   }
   if (likeliest_ && likeliest_->row > row) --likeliest_->row;
   if (expected_ && *expected_ > row) --*expected_;
-  traces_.removed(row);
+  traces_.removed(row, forgotten);
   wrong_.removed(row);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -210,6 +211,8 @@ PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
   if (size() == capacity()) {
     taken.removed = row_to_go(keep);
     if (!taken.removed) return taken;
+    taken.forgotten =
+        *taken.removed == 0 || *taken.removed + 1 == order_.around(*taken.removed).last;
     order_.remove(*taken.removed);
     if (last_linked_ == taken.removed) {
       last_linked_.reset();
@@ -233,15 +236,21 @@ std::optional<std::size_t> PlaceMap::row_to_go(std::size_t keep) noexcept {
   // one of them goes only where there is no other.
   const std::size_t last = size() - std::max<std::size_t>(keep, 1);
   if (hand_ + 1 >= last) hand_ = 0;
-  const std::size_t end = std::min(hand_ + thinned_among, last - 1);
-  std::size_t least = std::min(hand_ + 1, last - 1);
   const auto missed = [&](std::size_t row) {
     return spacing_[order_.slot(row)] + spacing_[order_.slot(row + 1)];
   };
-  for (std::size_t row = least; row <= end; ++row) {
-    if (missed(row) < missed(least)) least = row;
-  }
-  hand_ = end;
+  const auto least_from = [&](std::size_t hand) {
+    const std::size_t end = std::min(hand + thinned_among, last - 1);
+    std::size_t least = std::min(hand + 1, last - 1);
+    for (std::size_t row = least; row <= end; ++row) {
+      if (missed(row) < missed(least)) least = row;
+    }
+    hand_ = end;
+    return least;
+  };
+  const std::size_t least = least_from(hand_);
+  // The last rows of a round may be few, and ends of sessions all of them.
+  if (std::isinf(missed(least)) && hand_ + 1 >= last) return least_from(0);
   return least;
 }
 

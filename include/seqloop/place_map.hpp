@@ -106,6 +106,8 @@ class PlaceMap {
   struct Taken {
     std::optional<std::size_t> slot;     ///< where the place is now; none: refused
     std::optional<std::size_t> removed;  ///< the row that went for it
+    bool forgotten = false;  ///< that was the map's first, or its session's last: no row behind it
+                             ///< shows much the same, as where the map is thinned out
   };
 
   /// Appends what a detector compares its frames by; a full map does as `FullMap` says.

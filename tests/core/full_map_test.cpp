@@ -304,6 +304,56 @@ TEST(FullMap, AThinnedMapGoesOnFindingTheRobot) {
   EXPECT_GT(accepted, 110U);
 }
 
+/// A map of one earlier drive, which is full.
+PlaceMap full_of(const oracle::Vectors& places, const MatcherConfig& config) {
+  PlaceMap map(config, {places.size(), places.front().size(), 2});
+  fill(map, places);
+  return map;
+}
+
+// A map so small that an earlier drive goes row by row, its last one too: the row behind that one
+// is the running drive's first.
+TEST(FullMap, APlaceThatIsForgottenAtTheEndOfASessionIsNoneOfTheNext) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.full_map = FullMap::thin;
+  config.exclude = 2;
+  config.vmin = 0.0;
+  config.standardisation.on = false;
+  std::size_t named = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const oracle::Vectors known = test::way(seed, least_places(config), 0.3F, 1);
+    PlaceMap map = full_of(known, config);
+    Detector detector(config, map);
+    const oracle::Vectors again = test::way(seed, known.size(), 0.3F, 2);
+    for (const auto& seen : again) EXPECT_TRUE(detector.step(seen).answers.empty());
+    for (const Answer& answer : detector.finish()) {
+      if (!answer.match) continue;
+      ++named;
+      EXPECT_LT(answer.match->place, known.size())
+          << "frame " << answer.frame << ", seed " << seed << ": a place that was new then";
+    }
+  }
+  std::printf("%zu answers name a place\n", named);
+}
+
+TEST(FullMap, TheEndsOfSessionsStayWhereOtherRowsMayGo) {
+  for (std::size_t more = 60; more < 70; ++more) {
+    SCOPED_TRACE(more);
+    MatcherConfig config = paper(Candidates::all, 5, Use::close_loops);
+    config.full_map = FullMap::thin;
+    config.exclude = 20;
+    const oracle::Vectors known = oracle::drive(3, config.exclude + 5 + more, 16);
+    PlaceMap map = full_of(known, config);
+    Detector detector(config, map);
+    for (const auto& seen : oracle::drive(4, 200, 16)) {
+      static_cast<void>(detector.step(seen));
+      EXPECT_EQ(map.order().number(0), 0U);
+      ASSERT_TRUE(map.order().row_of_number(known.size() - 1)) << "the last";
+    }
+  }
+}
+
 TEST(FullMap, AllPlacesMayBeNeeded) {
   MatcherConfig config;
   config.use = Use::close_loops;

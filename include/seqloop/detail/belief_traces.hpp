@@ -47,8 +47,8 @@ class BeliefTraces {
   std::size_t trace(std::size_t index, std::span<Step> out) const noexcept;
 
   /// A row went from the map: those behind it are counted one lower. A trace ends where it came
-  /// from a place that has been forgotten.
-  void removed(std::size_t row) noexcept;
+  /// from a place that has been forgotten. @param forgotten as `PlaceMap::Taken` has it
+  void removed(std::size_t row, bool forgotten) noexcept;
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept;

@@ -10,14 +10,16 @@ namespace seqloop {
 template <class Row>
 inline constexpr Row gone = std::numeric_limits<Row>::max();
 
-/// A row went from the map: what is kept of those behind it is counted one lower. The map's first
-/// row was forgotten, and is gone. Any other was thinned out: the next one shows much the same.
+/// A row went from the map: what is kept of those behind it is counted one lower.
+/// @param forgotten whether it is gone for good, as `PlaceMap::Taken` has it; otherwise the next
+/// one
+///   shows much the same
 template <class Row>
-void count_without(std::size_t row, Row& kept) noexcept {
+void count_without(std::size_t row, bool forgotten, Row& kept) noexcept {
   if (kept == gone<Row>) return;
   if (kept > row) {
     --kept;
-  } else if (kept == row && row == 0) {
+  } else if (kept == row && forgotten) {
     kept = gone<Row>;
   }
 }

@@ -104,7 +104,8 @@ class PendingAnswers {
 
   /// A row went from the map: those behind it are counted one lower. A frame that waits, and was at
   /// a place that is forgotten, is answered as if nothing were known of it.
-  void removed(std::size_t row) noexcept;
+  /// @param forgotten as `PlaceMap::Taken` has it
+  void removed(std::size_t row, bool forgotten) noexcept;
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept;

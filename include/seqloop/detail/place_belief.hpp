@@ -56,8 +56,9 @@ class PlaceBelief {
   /// Frames went by unseen, and the robot moved on by this many rows in each.
   void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
 
-  /// A row went from the map: those behind it are counted one lower.
-  void removed(std::size_t row) noexcept;
+  /// A row went from the map: those behind it are counted one lower. @param forgotten as
+  /// `PlaceMap::Taken` has it
+  void removed(std::size_t row, bool forgotten) noexcept;
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept;
