@@ -72,11 +72,13 @@ class PictureFileDecoder::Impl {
                                             Image& image) {
     // Of two bytes OpenCV keeps the upper one, whatever white is: little of 10 or 12 bits.
     const bool deep = white > 255 && white < 65'535;
+    // One byte it takes as it is, where it is no text: a picture of 7 bits stays dark.
+    const bool shallow = white > 0 && white < 255 && file[1] >= '5';
     // Not into the old picture: given one, imdecode leaves it there for some files it cannot read.
     picture_.release();
     picture_ = file_codecs().decode(file, deep ? flags_ | cv::IMREAD_ANYDEPTH : flags_);
     if (picture_.empty()) return unreadable;
-    if (deep) picture_.convertTo(picture_, CV_8U, 255.0 / static_cast<double>(white));
+    if (deep || shallow) picture_.convertTo(picture_, CV_8U, 255.0 / static_cast<double>(white));
     image = view(picture_);
     return {};
   }

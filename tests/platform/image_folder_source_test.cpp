@@ -85,7 +85,7 @@ TEST(ImageFolderSource, MakesEightBitGreyOrBgrOfDeepAndTransparentPictures) {
   EXPECT_EQ(h.frame.image.data[0], 0x80);
 }
 
-// Cameras of 10 and 12 bits write them: white is what the header says it is.
+// Cameras of 10 and 12 bits write them, and some of 7: white is what the header says it is.
 TEST(ImageFolderSource, ScalesPgmAndPpmToTheirWhite) {
   const std::string comment = "\n# made in 1995 by a camera of 12 bits\n";
   const std::string half{1, static_cast<char>(0xff)};  // 511
@@ -97,11 +97,20 @@ TEST(ImageFolderSource, ScalesPgmAndPpmToTheirWhite) {
   folder.write("3.pgm", "P2 2 1 4095\n2048 4095\n");
   folder.write("4.pgm", "P5 2 1 255\n\x7f\xff");
   folder.write("5.pgm", "P5 2 1 65535\n\x7f\xff\xff\xff");
-  folder.write("6.pgm", "P5 3 1 1023\n" + half);
+  folder.write("6.pgm", "P5 3 1 127\n\x3f\x7f\x80");
+  folder.write("7.ppm", "P6 1 1 127\n\x3f\x3f\x7f");
+  folder.write("8.pgm", "P2 2 1 127\n63 127\n");
+  folder.write("9.pgm", "P5 3 1 1023\n" + half);
   for (const bool gray : {false, true}) {
     ImageFolderSource source(folder.path(), gray);
-    for (const std::vector<int>& values : std::vector<std::vector<int>>{
-             {127, 255, 255}, {gray ? 142 : 255}, {128, 255}, {127, 255}, {127, 255}}) {
+    for (const std::vector<int>& values : std::vector<std::vector<int>>{{127, 255, 255},
+                                                                        {gray ? 142 : 255},
+                                                                        {128, 255},
+                                                                        {127, 255},
+                                                                        {127, 255},
+                                                                        {126, 255, 255},
+                                                                        {gray ? 141 : 255},
+                                                                        {126, 255}}) {
       const Grabbed g = next(source);
       ASSERT_EQ(g.grab, Grab::frame) << g.fault;
       EXPECT_EQ(g.frame.image.format, gray ? PixelFormat::gray8 : PixelFormat::bgr8);
@@ -110,7 +119,7 @@ TEST(ImageFolderSource, ScalesPgmAndPpmToTheirWhite) {
         got.push_back(g.frame.image.data[x * (gray ? 1 : 3)]);
       EXPECT_EQ(got, values) << g.frame.index;
     }
-    EXPECT_TRUE(says(next(source).fault, "6.pgm: the file is no readable picture"));
+    EXPECT_TRUE(says(next(source).fault, "9.pgm: the file is no readable picture"));
   }
 }
 
