@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -59,7 +60,8 @@ class VideoSource::Impl {
     try {
       const std::vector<std::uint8_t> head = head_of(file);
       avi_ = read_avi_header(head);
-      pending_ = begin_jpeg(file);
+      constexpr int a_few = 10;  // not the first alone: webcams often damage it
+      pending_ = begin_jpeg(file, a_few);
       if (!pending_) {
         capture_ = file_codecs().video();
         if (std::none_of(backends.begin(), backends.end(), [&](cv::VideoCaptureAPIs backend) {
@@ -70,6 +72,7 @@ class VideoSource::Impl {
                     "convert it, for instance to .mp4 or .avi, or use a folder of pictures"});
         read_properties(head);
         pending_ = read();  // some files open well and hold no frame
+        if (!pending_) pending_ = begin_jpeg(file, std::numeric_limits<int>::max());
       }
     } catch (const cv::Exception& failure) {
       throw SetupError(Fault{name, "is not a video that OpenCV can read (" + failure.err + ")"});
@@ -104,6 +107,10 @@ class VideoSource::Impl {
     if (!rate_told_)
       lines.emplace_back(
           "the video does not say its frame rate: it is taken for 25 frames a second");
+    if (!given_up_.empty())
+      lines.push_back("none of its first pictures can be decoded by itself (" + given_up_ +
+                      "): OpenCV reads the video, which does not tell of damaged pictures, and may "
+                      "leave out what it cannot read or end there");
     const std::uint64_t begun = pictures_ ? pictures_->begun() : next_;
     if (ended_ && declared_ && begun < *declared_)
       lines.push_back("the video ended after " + std::to_string(begun) + " of the " +
@@ -128,19 +135,22 @@ class VideoSource::Impl {
     if (rate_told_) rate_ = rate;
   }
 
-  /// Leaves reading to AviPictures and decoding to mjpg_ where they can. @return whether the first
-  /// picture is there
-  [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file) {
+  /// Leaves reading to AviPictures and decoding to mjpg_ where they can.
+  /// @param looked_at so many pictures at most, of which one must be decoded
+  /// @return whether the first picture is there
+  [[nodiscard]] bool begin_jpeg(const std::filesystem::path& file, int looked_at) {
     if (!mjpg_ || !avi_ || !avi_->motion_jpeg) return false;
-    constexpr int looked_at = 10;  // not the first alone: webcams often damage it
     pictures_.emplace(file, *avi_);
     bool any_usable = false;
     for (int i = 0; i < looked_at && !any_usable && read(); ++i) any_usable = usable_;
     pictures_.emplace(file, *avi_);
     if (!any_usable || !read()) {
       pictures_.reset();  // some cameras send every second line as a picture of its own
+      given_up_ = damage_;
       return false;
     }
+    capture_.reset();
+    given_up_.clear();
     set_rate(avi_->rate);
     if (avi_->frames > 0) declared_ = avi_->frames;
     first_number_ = pictures_->number();
@@ -204,6 +214,7 @@ class VideoSource::Impl {
   Image image_;              ///< of pictures_, in mjpg_'s memory or picture_'s
   std::string_view damage_;  ///< likewise
   bool usable_ = false;      ///< all the same
+  std::string given_up_;     ///< why mjpg_ does not decode; empty where it does
   std::uint64_t first_number_ = 0;
   std::unique_ptr<cv::VideoCapture> capture_;  ///< null: pictures_ are read
   cv::Mat picture_;

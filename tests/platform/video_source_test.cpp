@@ -179,6 +179,26 @@ TEST_F(VideoSourceTest, AFirstPictureThatIsDamagedIsOneUnreadableFrame) {
   }
 }
 
+// Bad input: OpenCV finds no frame in it then.
+TEST_F(VideoSourceTest, WhatFollowsManyPicturesThatAreNoneIsRead) {
+  const TemporaryFolder folder;
+  std::string file = test::read_all(make_video(folder));
+  for (int i = 0; i < frames - 1; ++i) {
+    const std::size_t first = picture_chunk(file, i) + 8;
+    std::fill(file.begin() + static_cast<std::ptrdiff_t>(first),
+              file.begin() + static_cast<std::ptrdiff_t>(picture_chunk(file, i + 1)), '\0');
+  }
+  VideoSource source(folder.write("late.avi", file), false, small_and_gray());
+  Frame frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_EQ(source.grab(frame), i < frames - 1 ? Grab::unreadable : Grab::frame) << i;
+    EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+    EXPECT_DOUBLE_EQ(frame.time_s, 0.05 * i);
+  }
+  EXPECT_EQ(source.grab(frame), Grab::end);
+  EXPECT_TRUE(source.notes().empty());
+}
+
 TEST_F(VideoSourceTest, WhatTheDecoderDoesNotTakeIsLeftToOpenCv) {
   const TemporaryFolder folder;
   std::string file = test::read_all(make_video(folder));
@@ -191,6 +211,11 @@ TEST_F(VideoSourceTest, WhatTheDecoderDoesNotTakeIsLeftToOpenCv) {
     EXPECT_EQ(frame.image.format, PixelFormat::bgr8);
   }
   EXPECT_EQ(source.grab(frame), Grab::end);
+  ASSERT_EQ(source.notes().size(), 1U);
+  EXPECT_TRUE(
+      says(source.notes()[0],
+           "none of its first pictures can be decoded by itself (the JPEG picture is 64x48, "
+           "but 72x48 was declared): OpenCV reads the video"));
 }
 
 // Bad input: a video that was cut off.

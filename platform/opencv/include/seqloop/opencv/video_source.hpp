@@ -22,7 +22,8 @@ class VideoSource : public FrameSource {
  public:
   /// @param gray hand over grey pictures
   /// @param mjpg decodes motion JPEG in AVI files, to a size and colour of its own, unless it can
-  /// decode none of the first ten pictures; null: the backend does
+  /// decode none of the first ten pictures, and the backend can, which `notes` says; null: the
+  /// backend does
   /// Throws SetupError: not there, not a file, not a video, no frame in it.
   VideoSource(const std::filesystem::path& file, bool gray,
               std::unique_ptr<PictureDecoder> mjpg = nullptr);
