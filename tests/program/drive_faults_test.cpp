@@ -98,6 +98,23 @@ TEST_F(DriveFaults, AVideoThatPromisesTooLittleIsReadToItsEnd) {
   EXPECT_EQ(lines("r.jsonl").size(), 50U);
 }
 
+// Whoever looks at whole pictures, such as `stills`, reads as far as whoever describes them.
+TEST_F(DriveFaults, APictureThatIsNoneEndsNoVideo) {
+  std::string bytes = video();
+  std::size_t chunk = bytes.find("movi");
+  for (int i = 0; i <= 7; ++i) chunk = bytes.find("00dc", chunk + 4);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(chunk) + 8,
+            bytes.begin() + static_cast<std::ptrdiff_t>(bytes.find("00dc", chunk + 4)), '\0');
+  folder_.write("drive.avi", bytes);
+  const std::string fault = "frame 7: the frame is no JPEG picture";
+  expect_says(run("stills --source drive.avi --out stills"), 0,
+              {fault, "50 stills", "1 unreadable frames are empty files"});
+  EXPECT_EQ(std::filesystem::file_size(file("stills/000007.png")), 0U);
+  EXPECT_GT(std::filesystem::file_size(file("stills/000049.png")), 0U);
+  expect_says(run("describe --source drive.avi --out d.npy"), 0,
+              {fault, "50 frames", "1 unreadable frames"});
+}
+
 TEST_F(DriveFaults, AVideoWithoutAFrameRateIsRemarkedOn) {
   std::string bytes = video();
   folder_.write("drive.avi", bytes);

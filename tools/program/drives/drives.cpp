@@ -123,11 +123,10 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
   if (!settings.topic.empty()) say("{}: it is no bag: --topic does not choose here", path.string());
-  return opencv::open_source(
-      path, {.frames_per_second = settings.fps,
-             .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false),
-             .mjpg = describer == nullptr ? nullptr
-                                          : std::make_unique<CameraDecoder>(describer->needs())});
+  const PictureNeeds needs = describer == nullptr ? PictureNeeds{} : describer->needs();
+  return opencv::open_source(path, {.frames_per_second = settings.fps,
+                                    .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false),
+                                    .mjpg = std::make_unique<CameraDecoder>(needs)});
 }
 
 std::int64_t start_ns(const FrameSource* recording) noexcept {
