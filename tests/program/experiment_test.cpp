@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "evaluation/csv.hpp"
 #include "platform/pictures.hpp"
@@ -28,6 +29,24 @@ class Experiments : public test::Program {
       folder_.write(fmt::format("{}/{}.png", name, i),
                     test::encoded(place(cv::Rect(moved + i % 2 * 3, 0, 64, 32)).clone(), ".png"));
     }
+  }
+
+  /// The same as a motion JPEG whose header declares so many frames.
+  void make_video(const std::string& name, const std::string& drive, int frames,
+                  std::uint32_t declared) const {
+    {
+      cv::VideoWriter writer(file(name), cv::CAP_OPENCV_MJPEG,
+                             cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, cv::Size(64, 32));
+      for (int i = 0; i < frames; ++i) {
+        writer.write(cv::imread(file(fmt::format("{}/{}.png", drive, i))));
+      }
+    }
+    std::string bytes = test::read_all(file(name));
+    for (const std::size_t place : {bytes.find("avih") + 8 + 16, bytes.find("strh") + 8 + 32}) {
+      for (std::size_t i = 0; i < 4; ++i)
+        bytes.at(place + i) = static_cast<char>(declared >> 8 * i);
+    }
+    folder_.write(name, bytes);
   }
 
   static constexpr const char* drives = R"(
@@ -347,6 +366,40 @@ TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
   expect_refused({"nothing to run"});
   write_experiment("[[drive]\n");
   expect_refused({"not TOML"});
+}
+
+// Headers count too few frames where a recording was stopped hard, and too many where a camera left
+// some out.
+TEST_F(Experiments, CountTheFramesOfAVideoThemselves) {
+  for (const std::uint32_t declared : {3U, 60U}) {
+    SCOPED_TRACE(declared);
+    make_video("b.avi", "b", 40, declared);
+    std::string text = drives + std::string(pair) +
+                       "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\n"
+                       "descriptor = \"gradients\"\nds = 4\n";
+    text.replace(text.find("\"b\""), 3, "\"b.avi\"");
+    write_experiment(text);
+    expect_done();
+    const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+    EXPECT_EQ(table.whole(0, table.column("queries")), 40U);
+    EXPECT_EQ(table.whole(0, table.column("frames")), 40U);
+  }
+}
+
+// That drives do not belong together is known once a video was read: it is told once, then.
+TEST_F(Experiments, RefuseVideosThatTurnOutToBeOfAnotherLength) {
+  make_video("b.avi", "b", 30, 40);
+  std::string text = drives + std::string(pair) +
+                     "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\n"
+                     "descriptor = \"gradients\"\nds = 4\n";
+  text.replace(text.find("\"b\""), 3, "\"b.avi\"");
+  write_experiment(text);
+  const test::Outcome outcome = run_it();
+  EXPECT_EQ(outcome.exit_code, 2);
+  const std::string why = "cannot belong together in drives of 40 and of 30 frames";
+  const std::size_t first = outcome.err.find(why);
+  ASSERT_NE(first, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(why, first + 1), std::string::npos) << outcome.err;
 }
 
 TEST_F(Experiments, DoAgainWhatOtherFilesSayOtherwise) {

@@ -9,6 +9,7 @@
 
 #include "experiment/run/fingerprint.hpp"
 #include "program/drives/describe_drive.hpp"
+#include "program/drives/known_length.hpp"
 #include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
@@ -31,22 +32,30 @@ void collect_at(const std::string& where, Faults& faults, Part part) {
 DescribedDrives::DescribedDrives(const Experiment& experiment, std::filesystem::path folder)
     : experiment_(experiment), folder_(std::move(folder)) {}
 
-std::unique_ptr<FrameSource> DescribedDrives::open(const std::string& drive) const {
-  const DriveSpec& spec = experiment_.drive(drive);
+std::unique_ptr<FrameSource> DescribedDrives::open_whole(const DriveSpec& spec) {
   if (program::is_described(spec.source)) {
     throw SetupError(Fault{spec.source.string(), "holds descriptors already",
                            "give an image folder or a video"});
   }
   program::DriveSettings settings;
   settings.fps = spec.fps;
-  return make_stills(program::open_drive(spec.source, "source", settings), spec.stills);
+  return program::open_drive(spec.source, "source", settings);
+}
+
+std::unique_ptr<FrameSource> DescribedDrives::open(const std::string& drive) const {
+  const DriveSpec& spec = experiment_.drive(drive);
+  return make_stills(open_whole(spec), spec.stills);
 }
 
 void DescribedDrives::check(Faults& faults) {
   std::map<std::string, std::string> states;  // of drives
   for (const DriveSpec& drive : experiment_.drives) {
     collect_at(drive.where, faults, [&] {
-      lengths_[drive.name] = open(drive.name)->frame_count();
+      std::unique_ptr<FrameSource> whole = open_whole(drive);
+      const bool known = program::known_length(*whole).has_value();
+      const auto frames = make_stills(std::move(whole), drive.stills)->frame_count();
+      declared_[drive.name] = frames;
+      if (known) lengths_[drive.name] = frames;
       states[drive.name] = text_of(drive.settings) + drive.source.string() + state_of(drive.source);
     });
   }
@@ -89,8 +98,8 @@ std::vector<Job> DescribedDrives::jobs() const {
       name += " " + setting.name + " " + setting.value;
     // A net takes some ten times as long as what is built in.
     const double a_frame = descriptor.describer.model.model.empty() ? 1.0 : 10.0;
-    const double frames = static_cast<double>(length(wanted.drive).value_or(1000));
-    jobs.push_back({name, frames * a_frame, [this, wanted = wanted] { describe(wanted); }});
+    jobs.push_back(
+        {name, about(wanted.drive) * a_frame, [this, wanted = wanted] { describe(wanted); }});
   }
   return jobs;
 }
@@ -98,6 +107,13 @@ std::vector<Job> DescribedDrives::jobs() const {
 std::optional<std::uint64_t> DescribedDrives::length(const std::string& drive) const {
   const auto found = lengths_.find(drive);
   return found == lengths_.end() ? std::nullopt : found->second;
+}
+
+double DescribedDrives::about(const std::string& drive) const {
+  constexpr std::uint64_t some = 1'000;
+  const auto found = declared_.find(drive);
+  const auto declared = found == declared_.end() ? std::nullopt : found->second;
+  return static_cast<double>(declared.value_or(some));
 }
 
 std::filesystem::path DescribedDrives::file(const std::string& drive,

@@ -29,8 +29,11 @@ class DescribedDrives {
   /// What is not there yet, to be done before anything is asked for.
   [[nodiscard]] std::vector<Job> jobs() const;
 
-  /// Frames of a drive as far as its source knows them beforehand. After `check`.
+  /// Frames of a drive, where that is sure beforehand: what a video declares is not. After `check`.
   [[nodiscard]] std::optional<std::uint64_t> length(const std::string& drive) const;
+
+  /// Frames of a drive, more or less, for what work on it costs. After `check`.
+  [[nodiscard]] double about(const std::string& drive) const;
 
   /// Where the descriptors are, whose name tells what they were made from. After `check`.
   [[nodiscard]] std::filesystem::path file(const std::string& drive, std::size_t descriptor) const;
@@ -47,11 +50,15 @@ class DescribedDrives {
     }
   };
 
+  /// Before stills are taken of it. Throws SetupError.
+  static std::unique_ptr<FrameSource> open_whole(const DriveSpec& spec);
+
   void describe(const Wanted& wanted) const;
 
   const Experiment& experiment_;
   std::filesystem::path folder_;
   std::map<std::string, std::optional<std::uint64_t>> lengths_;
+  std::map<std::string, std::optional<std::uint64_t>> declared_;
   std::map<Wanted, std::filesystem::path> files_;
 };
 

@@ -166,9 +166,9 @@ class Runner {
     for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
       const PairSpec& pair = experiment_.pairs[i];
       if (!pair.leave_out) continue;
-      const auto frames = static_cast<double>(drives_.length(pair.queries.front()).value_or(1000));
       jobs.push_back(
-          {"dark and standing frames of " + pair.name, frames, [this, &pair, i] {
+          {"dark and standing frames of " + pair.name, drives_.about(pair.queries.front()),
+           [this, &pair, i] {
              kept_frames_[i] = leave_out(*drives_.open(pair.reference),
                                          *drives_.open(pair.queries.front()), *pair.leave_out);
              if (kept_frames_[i]->frames.empty()) {
@@ -198,7 +198,11 @@ class Runner {
         bytes +=
             static_cast<double>(std::filesystem::file_size(drives_.file(query, run.descriptor)));
       }
-      const auto places = static_cast<double>(lengths_of(pair).map(pair).value_or(1000));
+      double places = 0.0;
+      for (const std::string& drive :
+           pair.reference.empty() ? pair.queries : std::vector{pair.reference}) {
+        places += drives_.about(drive);
+      }
       jobs.push_back({name, share * bytes * places, [this, &run] { match(run); }});
     }
     return jobs;
@@ -214,6 +218,7 @@ class Runner {
     lengths.queries.assign(described.query_lengths.begin(), described.query_lengths.end());
     Faults faults;
     check_lengths(run.pair, lengths, faults);
+    program::refuse(faults);  // before the truth would tell its faults once more
     const evaluation::Truth truth = pair_truth(pair, lengths, faults);
     program::refuse(std::move(faults));
 
