@@ -368,6 +368,21 @@ TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
   expect_refused({"not TOML"});
 }
 
+TEST_F(Experiments, LeaveOutEverySpanOfAList) {
+  std::string text = drives + std::string(pair) +
+                     "truth = \"t.csv\"\n"
+                     "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\n"
+                     "descriptor = \"gradients\"\nds = 4\n";
+  const std::string drive = "source = \"b\"\n";
+  text.insert(text.find(drive), "leave-out = [\"0-1\", \"2-2.5,3-3.1\", \"spans.csv\"]\n");
+  folder_.write("spans.csv", "from_s,to_s\n3.5,3.7\n");
+  folder_.write("t.csv", "query,reference\n0,10\n");
+  write_experiment(text);
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  EXPECT_EQ(table.whole(0, table.column("queries")), 40U - 10U - 5U - 1U - 2U);
+}
+
 // Headers count too few frames where a recording was stopped hard, and too many where a camera left
 // some out.
 TEST_F(Experiments, CountTheFramesOfAVideoThemselves) {

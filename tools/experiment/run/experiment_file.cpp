@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -118,16 +119,17 @@ class Reader {
 
   /// Spans, or a file of them, which may change while its name does not.
   void read_leave_out(const Section& section, DriveSpec& drive) {
-    const Names text = section.names("leave-out");
-    if (text.empty()) return;
-    std::filesystem::path file = text.front();
-    find(file);
-    std::error_code error;
-    const bool is_file = std::filesystem::exists(file, error);
-    try {
-      drive.stills.leave_out = program::parse_intervals(is_file ? file.string() : text.front());
-    } catch (const std::invalid_argument& why) {
-      section.refuse(std::string("'leave-out': ") + why.what());
+    for (const std::string& text : section.names("leave-out")) {
+      std::filesystem::path file = text;
+      find(file);
+      std::error_code error;
+      const bool is_file = std::filesystem::exists(file, error);
+      try {
+        std::ranges::copy(program::parse_intervals(is_file ? file.string() : text),
+                          std::back_inserter(drive.stills.leave_out));
+      } catch (const std::invalid_argument& why) {
+        section.refuse(std::string("'leave-out': ") + why.what());
+      }
     }
     for (const program::Interval& span : drive.stills.leave_out) {
       drive.settings.push_back({"leave-out", fmt::format("{}-{}", span.from_s, span.to_s)});
