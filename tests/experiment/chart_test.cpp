@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "experiment/report/spread.hpp"
@@ -135,6 +137,26 @@ TEST(Chart, AxesOfNumbersEndAtRoundOnes) {
   report.figures[0].y = "distances";  // 43,264.5
   EXPECT_EQ(chart_of(report, 0).y.ticks,
             (std::vector<double>{0.0, 10000.0, 20000.0, 30000.0, 40000.0, 50000.0}));
+}
+
+/// Where the text of a class begins.
+double text_begins(const std::string& svg, const std::string& of_class) {
+  const std::size_t end = svg.find("class=\"" + of_class + '"');
+  const std::size_t begin = svg.rfind("x=\"", end) + 3;
+  return std::stod(svg.substr(begin));
+}
+
+TEST(Chart, KeepsNumbersNamesAndItsEdgeApart) {
+  constexpr double bold_1_000 = 12.0 * 3.163;  // in DejaVu Sans
+  Report report;
+  report.results = {synthetic_result("p", std::string(200, 'n'), "d", {{"ds", "20"}}, 1.0)};
+  report.figures = {figure(FigureKind::precision_recall, {"method"})};
+  const std::string svg = panel_svgs(chart_of(report, 0)).at(0);
+  EXPECT_GE(text_begins(svg, "name") - text_begins(svg, "value"), bold_1_000);
+  const std::size_t begin = svg.find('>', svg.find("class=\"name\"")) + 1;
+  const std::string name = svg.substr(begin, svg.find('<', begin) - begin);
+  const auto letters = static_cast<double>(std::ranges::count(name, 'n'));
+  EXPECT_LE(text_begins(svg, "name") + 12.0 * (0.634 * letters + 1.0), 392.0) << name;
 }
 
 TEST(Chart, SaysWhatItDoesNotTellApart) {

@@ -97,11 +97,19 @@ TEST(Text, IsSafeInXml) {
 
 TEST(Text, IsShortenedInTheMiddleAndWrappedAtSpaces) {
   EXPECT_EQ(shortened("short", 10.0, 100.0), "short");
-  EXPECT_EQ(shortened("00000000aa99999999", 10.0, 50.0), "0000…999");
-  EXPECT_EQ(wrapped("aaaa aaaa bbbb", 10.0, 50.0), (std::vector<std::string>{"aaaa aaaa", "bbbb"}));
+  EXPECT_EQ(shortened("00000000aa99999999", 10.0, 56.0), "0000…999");
+  EXPECT_EQ(wrapped("aaaa aaaa bbbb", 10.0, 56.0), (std::vector<std::string>{"aaaa aaaa", "bbbb"}));
   EXPECT_EQ(slug("Fig. 4: A-SeqCNNSLAM, K × Num?"), "fig-4-a-seqcnnslam-k-num");
   EXPECT_EQ(slug(std::string(60, 'x')), std::string(40, 'x'));
   EXPECT_EQ(slug("→"), "");
+}
+
+// What DejaVu Sans takes, which a Debian has where nobody has installed another font.
+TEST(Text, IsAsWideAsInTheWidestFont) {
+  EXPECT_GE(text_width("abcdefghijklmnopqrstuvwxyz", 1.0), 14.65);
+  EXPECT_GE(text_width("ABCDEFGHIJKLMNOPQRSTUVWXYZ", 1.0), 17.47);
+  EXPECT_GE(text_width("0123456789.,-+%×", 1.0), 6.36 + 0.32 + 0.32 + 0.36 + 0.84 + 0.95 + 0.84);
+  EXPECT_LE(text_width("SeqCNNSLAM standardised", 1.0), 1.15 * 13.64);
 }
 
 TEST(Text, IsMadeOfBytes) {

@@ -24,6 +24,7 @@ constexpr double counts_title_height = 16.0;
 constexpr double label_height = 15.0;
 constexpr double font = 12.0;
 constexpr double tick_font = 11.0;
+constexpr double bold = 1.13;  // times as wide
 constexpr double leader_length = 22.0;
 constexpr double gap = 24.0;  // between panels
 
@@ -62,7 +63,7 @@ Layout layout_of(const Chart& chart) {
     most = std::max(most, panel.lines.size());
     for (const Line& line : panel.lines) {
       counts = counts || !line.counts.empty();
-      layout.value = std::max(layout.value, text_width(line.value, font) + 6.0);
+      layout.value = std::max(layout.value, text_width(line.value, bold * font) + 6.0);
       layout.name = std::max(layout.name, text_width(line.name, font));
     }
   }
@@ -196,7 +197,7 @@ std::string panel_content(const Chart& chart, const Panel& panel, const Layout& 
   }
   const std::vector<double> labels = spread(wanted, label_height, layout.top, layout.bottom);
   std::string svg =
-      text_at(0.0, 13.0, "class=\"title\"", shortened(panel.title, 13.0, 0.95 * panel_width));
+      text_at(0.0, 13.0, "class=\"title\"", shortened(panel.title, bold * 13.0, panel_width));
   svg += axes_svg(chart, x, y, titles);
   if (chart.diagonal) {
     svg += fmt::format("<path class=\"diagonal\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x.from,
@@ -240,7 +241,7 @@ std::vector<std::string> panel_svgs(const Chart& chart) {
 std::string figure_svg(const Chart& chart, const std::string& title) {
   constexpr std::size_t most_columns = 3;
   constexpr double margin = 16.0;
-  constexpr double heading_font = 17.0;  // a little more than it has, since it is bold
+  constexpr double heading_font = bold * 16.0;
   const std::size_t panels = chart.nothing.empty() ? chart.panels.size() : 0;
   const std::size_t columns = std::clamp<std::size_t>(panels, 1, most_columns);
   const auto place = [](std::size_t i, double size) {

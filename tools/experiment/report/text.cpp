@@ -30,14 +30,16 @@ void for_each_character(std::string_view text, Use use) {
   }
 }
 
-/// Width of a character in Arial, in units of the font's size.
+/// Width of a character in DejaVu Sans, in units of the font's size: the widest of the fonts that a
+/// page may be shown in, and the one of a Debian that has no other.
 double advance(std::string_view character) {
-  if (character.size() > 1) return character.size() == 2 ? 0.6 : 1.0;
+  if (character.size() > 1) return character.size() == 2 ? 0.84 : 1.0;
   const char c = character.front();
-  if (std::string_view("ijl'|").find(c) != std::string_view::npos) return 0.23;
-  if (std::string_view("ftrI ./,:;!()[]-\"").find(c) != std::string_view::npos) return 0.33;
-  if (std::string_view("mMW%@").find(c) != std::string_view::npos) return 0.9;
-  return c >= 'A' && c <= 'Z' ? 0.7 : 0.56;
+  if (std::string_view("ijl'|").find(c) != std::string_view::npos) return 0.34;
+  if (std::string_view("ftrI ./,:;!()[]-").find(c) != std::string_view::npos) return 0.42;
+  if (std::string_view("mMW%@").find(c) != std::string_view::npos) return 1.0;
+  if (std::string_view("w+=<>#~^&").find(c) != std::string_view::npos) return 0.84;
+  return c >= 'A' && c <= 'Z' ? 0.79 : 0.64;
 }
 
 }  // namespace
