@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "core/oracle.hpp"
@@ -463,6 +465,22 @@ TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {
   write_npy("q.npy", oracle::drive(5, 60, 20));
   const auto outcome = expect_done("run --source q.npy --ds 10 --exclude 20 | cat");
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60);
+}
+
+// A robot that stands adds no place, but places are called by their frames.
+TEST_F(Run, TheMatrixNamesPlacesAsTheAnswersDo) {
+  oracle::Vectors stop = oracle::drive(6, 60, 20);
+  stop.insert(stop.end(), 60, stop.back());
+  const oracle::Vectors rest = oracle::drive(7, 60, 20);
+  stop.insert(stop.end(), rest.begin(), rest.end());
+  write_npy("stop.npy", stop);
+  const auto highest = [&](const std::string& keyframes) {
+    expect_done("run --source stop.npy --exclude 20 --out l.jsonl --pictures drawn --keyframes " +
+                keyframes);
+    const cv::Mat picture = cv::imread(file("drawn/difference_matrix.png"));
+    return picture(cv::Rect(0, 20, 66, 30)).clone();  // beside the upper end of the axis
+  };
+  EXPECT_EQ(cv::norm(highest("on"), highest("off"), cv::NORM_INF), 0.0);
 }
 
 TEST_F(Run, EachOutputThatCanBeWrittenIs) {

@@ -48,10 +48,12 @@ cv::Mat to_greys(const cv::Mat& differences) {
   return greys;
 }
 
-void draw_axis(cv::Mat& picture, bool horizontal, std::uint64_t last) {
+/// @param name_of what a column or row is called, 0 .. last
+void draw_axis(cv::Mat& picture, bool horizontal, std::uint64_t last,
+               const std::function<std::uint64_t(std::uint64_t)>& name_of) {
   constexpr int ticks = 5;
   for (int tick = 0; tick <= ticks; ++tick) {
-    const std::uint64_t value = last * static_cast<std::uint64_t>(tick) / ticks;
+    const std::uint64_t value = name_of(last * static_cast<std::uint64_t>(tick) / ticks);
     const int along = plot_size * tick / ticks;
     const cv::Point at = horizontal ? cv::Point(margin + along, margin / 2 + plot_size)
                                     : cv::Point(margin, margin / 2 + plot_size - along);
@@ -202,8 +204,13 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
     cv::circle(inside, {static_cast<int>(x * plot_size), height_of(*row)}, 2, match_colour,
                cv::FILLED, cv::LINE_AA);
   }
-  draw_axis(picture, true, queries_.size() * step_);
-  draw_axis(picture, false, map.size());
+  draw_axis(picture, true, queries_.size() * step_, [](std::uint64_t frame) { return frame; });
+  // Numbers of places, which have gaps where a robot stood.
+  draw_axis(picture, false, map.size(), [&](std::uint64_t row) {
+    const PlaceOrder& order = map.order();
+    return row < map.size() ? order.number(static_cast<std::size_t>(row))
+                            : order.number(map.size() - 1) + 1;
+  });
   write_text(picture,
              fmt::format("places over frames; dark: alike; red: {} matches", matches_.size()),
              {margin, margin / 2 - 12});
