@@ -234,6 +234,26 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
   EXPECT_EQ(info("with.seqloop")["thumbnails"], 40);
 }
 
+// A session that nobody named is called by its date.
+TEST_F(LastingMaps, APlaceAndItsSessionHaveRoomOverItsPicture) {
+  std::filesystem::create_directory(file("drive"));
+  for (std::uint64_t n = 0; n < 40; ++n) {
+    folder_.write("drive/" + std::to_string(n) + ".png",
+                  test::encoded(test::textured(96, 64, n + 1), ".png"));
+  }
+  expect_done("run --source drive --map m.seqloop --out one.jsonl");
+  expect_done("run --source drive --map m.seqloop --read-only --pictures drawn --out two.jsonl");
+  const cv::Mat sheet = cv::imread(file("drawn/matches.png"));
+  constexpr int gap = 6;
+  constexpr int pair = 2 * 320 + 3 * gap;
+  ASSERT_EQ(sheet.cols, 2 * pair);
+  const cv::Mat between = sheet(cv::Rect(pair - gap, 0, gap, 24));
+  EXPECT_EQ(cv::norm(between, cv::Mat(between.size(), between.type(), cv::Scalar::all(255)),
+                     cv::NORM_INF),
+            0.0)
+      << "the caption is cut off";
+}
+
 TEST_F(LastingMaps, APoseGraphHasTheDrivesOwnLoops) {
   expect_done("run --source first.npy --map m.seqloop --out f.jsonl");
   // Two laps of another road, and the road of the map.

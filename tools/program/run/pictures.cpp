@@ -36,6 +36,14 @@ void write_text(cv::Mat& picture, const std::string& text, cv::Point where, doub
   cv::putText(picture, text, where, cv::FONT_HERSHEY_SIMPLEX, size, ink, 1, cv::LINE_AA);
 }
 
+/// A size at which the text is no wider than that, as far as it can be read then.
+double fitting(const std::string& text, int width) {
+  constexpr double usual = 0.5;
+  constexpr double least = 0.3;
+  const int needed = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, usual, 1, nullptr).width;
+  return std::clamp(usual * width / std::max(needed, 1), least, usual);
+}
+
 /// Stretches the middle 98 % of the differences over all greys: dark is alike.
 cv::Mat to_greys(const cv::Mat& differences) {
   std::vector<float> sorted(differences.begin<float>(), differences.end<float>());
@@ -124,8 +132,9 @@ bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>&
     right->second.copyTo(
         pair(cv::Rect({left->second.cols + 2 * gap, caption}, right->second.size())));
     write_text(pair, fmt::format("frame {}", answer.frame), {gap, caption - 7});
-    write_text(pair, fmt::format("{}, {}", name_of(answer.match->place), how_sure(answer)),
-               {left->second.cols + 2 * gap, caption - 7});
+    const std::string said = fmt::format("{}, {}", name_of(answer.match->place), how_sure(answer));
+    write_text(pair, said, {left->second.cols + 2 * gap, caption - 7},
+               fitting(said, right->second.cols));
     pairs.push_back(pair);
   }
   if (pairs.empty()) return false;
