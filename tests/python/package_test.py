@@ -343,8 +343,8 @@ class SameAsTheProgram(unittest.TestCase):
         truth = self.work / "truth.csv"
         rows = numpy.array([[query, query] for query in range(20, 110)])
         truth.write_text("query,reference\n" + "".join(f"{a},{b}\n" for a, b in rows))
-        for given, flags in ((rows, ["--truth", truth]), (str(truth), ["--truth", truth]), ("identity", []),
-                             ("no-revisit", ["--truth", "no-revisit"])):
+        for given, flags in ((rows, ["--truth", truth]), (str(truth), ["--truth", truth]), (truth, ["--truth", truth]),
+                             ("identity", []), (None, []), ("no-revisit", ["--truth", "no-revisit"])):
             flags += ["--threshold-on", "probability", "--tolerance", 3]
             measures = seqloop.evaluate(matches, given, threshold_on="probability", tolerance=3)
             said = json.loads(program("eval", "--matches", out, "--json", *flags).stdout)
@@ -355,6 +355,24 @@ class SameAsTheProgram(unittest.TestCase):
                 self.assertTrue(same, f"{name}: {ours}, {said[name]}")
         self.assertEqual(measures.curve.shape[1], 2)
 
+    def test_measures_by_positions(self) -> None:
+        out, places, driven = (self.work / name for name in ("matches.csv", "places.csv", "driven.csv"))
+        out.write_text(as_csv(matches := seqloop.match(self.reference, self.query)))
+        for file in (places, driven):
+            file.write_text("frame,x,y\n" + "".join(f"{frame},{2 * frame},0\n" for frame in range(120)))
+        measures = seqloop.evaluate(matches, reference_positions=places, query_positions=str(driven), radius=5)
+        said = json.loads(program("eval", "--matches", out, "--json", "--reference-positions", places,
+                                  "--query-positions", driven, "--radius", 5).stdout)
+        self.assertEqual((measures.frames, measures.correct), (said["frames"], said["correct"]))
+        self.assertGreater(measures.correct, 50)
+        for truth in ("identity", [[1, 1]]):
+            with self.assertRaisesRegex(seqloop.SetupError, "truth: positions are given too"):
+                seqloop.evaluate(matches, truth, reference_positions=places, query_positions=driven)
+            with self.assertRaisesRegex(seqloop.SetupError, "radius: it goes with positions"):
+                seqloop.evaluate(matches, truth, radius=5)
+        with self.assertRaisesRegex(seqloop.SetupError, "they are one file"):
+            seqloop.evaluate(matches, reference_positions=places, query_positions=places)
+
     def test_measures_refuse(self) -> None:
         matches = seqloop.match(self.reference, self.query)
         for truth, settings, words in ((numpy.zeros((3, 4), int), {}, r"\(3, 4\)"),
@@ -362,7 +380,7 @@ class SameAsTheProgram(unittest.TestCase):
                                        (-numpy.ones((3, 2), int), {}, "0 or more"),
                                        ("/nowhere.csv", {"threshold_on": "speed", "toll": 3}, "(?s)toll.*speed.*/nowh"),
                                        (numpy.zeros((0, 2), int), {}, "truth")):
-            with self.assertRaisesRegex(ValueError, words):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.evaluate(matches, truth, **settings)
 
     def test_the_difference_matrix(self) -> None:
@@ -370,6 +388,26 @@ class SameAsTheProgram(unittest.TestCase):
         naive = numpy.linalg.norm(self.reference[:, None] - self.query[None], axis=2)
         self.assertLess(numpy.abs(matrix - naive).max(), 1e-4)
         self.assertEqual(matrix.dtype, numpy.float32)
+        large = seqloop.differences(self.reference, self.query * numpy.float32(1e30), standardise=False)
+        self.assertTrue((large == seqloop.differences(self.reference, self.query, standardise=False)).all())
+
+    def test_the_difference_matrix_of_frames_that_say_nothing(self) -> None:
+        query = self.query[:6].copy()
+        query[0, 3], query[1], query[4, 0] = numpy.nan, 0, numpy.inf
+        matrix = seqloop.differences(self.reference, query)
+        self.assertTrue(numpy.isnan(matrix[:, :2]).all(), "nothing was seen so far")
+        self.assertTrue((matrix[:, 4] == matrix[:, 3]).all())
+        self.assertTrue(numpy.isfinite(matrix[:, 2:]).all())
+
+    def test_what_the_difference_matrix_refuses(self) -> None:
+        ones = numpy.ones((3, 4))
+        for reference, query, settings, words in (
+                ("a.npy", pathlib.Path("b.npy"), {}, "(?s)reference: 'a.npy' is a name.*query: 'b.npy' is a name"),
+                (ones[0], ones.astype(int), {"method": "seqslam"}, r"(?s)reference: .*\(4,\).*query: .*int64.*method"),
+                (numpy.float32(3), ones, {}, r"reference: its shape is \(\)"),
+                (ones, ones[:, :3], {}, "4 values in a row of one, 3 in a row of the other")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                seqloop.differences(reference, query, **settings)
 
 
 if __name__ == "__main__":

@@ -112,6 +112,12 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
       table += '\n';
     }
     settings.file = "truth";  // any name: it is by a list, not by identity
+    if (!settings.reference_positions.empty() || !settings.query_positions.empty()) {
+      faults.push_back({"truth", "positions are given too", "leave one of them out"});
+    } else if (settings.radius_m) {
+      faults.push_back({"radius", "it goes with positions, and none are given",
+                        "reference_positions R.csv, query_positions Q.csv"});
+    }
     program::collect(faults, [&] {
       known = evaluation::Truth::from_csv(evaluation::CsvTable(table, "truth"),
                                           settings.unlisted.value_or(evaluation::Unlisted::wrong));

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "program/options/verb.hpp"
@@ -28,7 +30,20 @@ evaluation::Unlisted parse_unlisted(std::string_view text) {
   throw std::invalid_argument("'" + std::string(text) + "' is neither wrong nor unknown");
 }
 
+/// Every frame is near itself, so that every frame of a first lap would count as missed.
+void refuse_one_file(const TruthSettings& truth, Faults& faults) {
+  std::error_code none_there;
+  if (!std::filesystem::equivalent(truth.reference_positions, truth.query_positions, none_there)) {
+    return;
+  }
+  faults.push_back({"reference-positions, query-positions",
+                    "they are one file, and every frame is near itself",
+                    "leave --reference-positions out where loops are closed within the drive; "
+                    "--truth identity where frames i of two drives belong together"});
+}
+
 evaluation::Truth read_positions(const TruthSettings& settings, Faults& faults) {
+  refuse_one_file(settings, faults);
   std::optional<evaluation::Positions> reference;
   std::optional<evaluation::Positions> query;
   const auto read = [&](auto& into, const std::filesystem::path& file) {

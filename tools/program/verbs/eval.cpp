@@ -101,18 +101,6 @@ void print_words(const evaluation::Measures& measures, std::uint64_t frames,
   }
 }
 
-/// Every frame is near itself, so that every frame of a first lap would count as missed.
-void refuse_one_file(const TruthSettings& truth, Faults& faults) {
-  std::error_code none_there;
-  if (!std::filesystem::equivalent(truth.reference_positions, truth.query_positions, none_there)) {
-    return;
-  }
-  faults.push_back({"reference-positions, query-positions",
-                    "they are one file, and every frame is near itself",
-                    "leave --reference-positions out where loops are closed within the drive; "
-                    "--truth identity where frames i of two drives belong together"});
-}
-
 void eval_matches(const EvalSettings& settings, Faults faults) {
   std::vector<evaluation::Answer> answers;
   if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
@@ -122,7 +110,6 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
           settings.matches, settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
     });
   }
-  refuse_one_file(settings.truth, faults);
   const JudgedBy judge = judge_by(settings.truth, read_truth(settings.truth, faults),
                                   settings.frames, answers, faults);
   refuse(std::move(faults));

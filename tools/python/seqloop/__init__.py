@@ -157,6 +157,12 @@ def _setup_error(faults: list[tuple[str, str, str]]) -> SetupError:
     return error
 
 
+def _named_files(**arrays: object) -> list[tuple[str, str, str]]:
+    return [(name, f"'{os.fspath(given)}' is a name, not an array of descriptors",
+             "numpy.load a described drive, or take describe_drive of pictures")
+            for name, given in arrays.items() if isinstance(given, (str, os.PathLike))]
+
+
 def match(reference: Floats | None, query: Floats | None = None, **settings: Setting) -> Matches:
     """Matches a drive with an earlier one, or with itself, as `seqloop match` does.
 
@@ -165,11 +171,7 @@ def match(reference: Floats | None, query: Floats | None = None, **settings: Set
     settings: see seqloop.settings().
     Errors: SetupError.
     """
-    faults: list[tuple[str, str, str]] = []
-    for name, given in (("reference", reference), ("query", query)):
-        if isinstance(given, (str, os.PathLike)):
-            faults.append((name, f"'{os.fspath(given)}' is a name, not an array of descriptors",
-                           "numpy.load a described drive, or take describe_drive of pictures"))
+    faults = _named_files(reference=reference, query=query)
     if query is None:
         faults.append(("query", "not given", "match(None, query) closes loops within one drive"))
     if faults or query is None:
@@ -177,11 +179,12 @@ def match(reference: Floats | None, query: Floats | None = None, **settings: Set
     return Matches(**_core.match(reference, query, **settings))
 
 
-def evaluate(matches: Matches, truth: str | Integers = "identity", *, threshold_on: str = "uniqueness",
+def evaluate(matches: Matches, truth: MapPath | Integers | None = None, *, threshold_on: str = "uniqueness",
              frames: int | None = None, **settings: Setting) -> Measures:
     """Compares answers with the truth, as `seqloop eval` does.
 
     truth: "identity", "no-revisit", the name of a CSV file, or integers [T, 2]: query, reference.
+        None: by positions where these are given, and identity elsewhere.
         Several rows of one query are several right answers; a third column is a row's own tolerance, in
         frames. Of a matrix `seen` [references, queries] that is True where both show one place, it is
         numpy.argwhere(seen.T).
@@ -193,13 +196,13 @@ def evaluate(matches: Matches, truth: str | Integers = "identity", *, threshold_
     Errors: SetupError.
     """
     pairs: Integers | None = None
-    if not isinstance(truth, str):
+    if truth is None or isinstance(truth, (str, os.PathLike)):
+        settings["truth"] = truth
+    else:
         pairs = numpy.asarray(truth)
         if pairs.ndim != 2 or pairs.shape[1] not in (2, 3) or pairs.dtype.kind not in "iu" or (pairs < 0).any():
-            raise ValueError(f"truth: it is {pairs.dtype} of shape {pairs.shape}; give integers of 0 or more, "
-                             "[T, 2] or [T, 3]: query, reference, tolerance")
-    else:
-        settings["truth"] = truth
+            raise _setup_error([("truth", f"it is {pairs.dtype} of shape {pairs.shape}",
+                                 "give integers of 0 or more, [T, 2] or [T, 3]: query, reference, tolerance")])
     sweeps = getattr(matches, threshold_on) if threshold_on in ("score", "probability") else matches.uniqueness
     return Measures(**_core.evaluate(
         matches.query, matches.match, sweeps, matches.probability, matches.accepted, threshold_on, pairs,
@@ -210,22 +213,42 @@ def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.
     """The difference matrix, [N, M]: how far each place (row) is from each frame (column), 0 to 2.
 
     By the same arithmetic as the matcher's, with standardised features unless standardise=False. A frame
-    that could not be read repeats the column before it. For looking at it, and for code that wants a
-    similarity matrix (its negative): the matcher itself never keeps it whole.
+    that could not be read (NaN, infinity, zeros) repeats the column before it; before the first that could,
+    columns are NaN. For looking at it, and for code that wants a similarity matrix (its negative): the
+    matcher itself never keeps it whole.
     Errors: SetupError.
     """
+    faults = _named_files(reference=reference, query=query)
+    if not faults:
+        for name, given in (("reference", reference), ("query", query)):
+            kind, shape = numpy.asarray(given).dtype, numpy.shape(given)
+            if len(shape) != 2:
+                faults.append((name, f"its shape is {shape}", "give [N, D]: a row for each frame"))
+            if kind.kind != "f":
+                faults.append((name, f"it is {kind}", "give floating-point descriptors"))
+    if not faults and numpy.shape(reference)[1] != numpy.shape(query)[1]:
+        faults.append(("reference, query", f"{numpy.shape(reference)[1]} values in a row of one, "
+                       f"{numpy.shape(query)[1]} in a row of the other", "describe both with the same model and layer"))
+    if settings.get("method") not in (None, "single"):
+        faults.append(("method", "differences are of single frames", "leave method out"))
+    if faults:
+        raise _setup_error(faults)
     settings["method"] = "single"
-    places = PlaceMap(len(reference), numpy.shape(reference)[-1], False, **settings)
+    places = PlaceMap(len(reference), numpy.shape(reference)[1], False, **settings)
     places.add_drive(reference)
     detector = Detector(places)
-    matrix = numpy.empty((len(reference), len(query)), numpy.float32)
-    frames = numpy.ascontiguousarray(query, numpy.float32)
-    if settings.get("difference") != "mean-absolute":
-        lengths = numpy.linalg.norm(frames, axis=1, keepdims=True)
-        frames = frames / numpy.maximum(lengths, numpy.float32(1e-30))
-    for frame, descriptor in enumerate(frames):
+    matrix = numpy.full((len(reference), len(query)), numpy.nan, numpy.float32)
+    by_length = settings.get("difference") != "mean-absolute"
+    seen = False
+    for frame, given in enumerate(query):
+        descriptor = numpy.asarray(given, numpy.float32, "C")
+        length = float(numpy.linalg.norm(numpy.asarray(descriptor, numpy.float64)))
+        if by_length and 0 < length < numpy.inf:
+            descriptor = (descriptor / length).astype(numpy.float32)
         detector.step(descriptor)
-        matrix[:, frame] = detector.newest_column()
+        seen = seen or (numpy.isfinite(length) and not (by_length and length == 0))
+        if seen:
+            matrix[:, frame] = detector.newest_column()
     return matrix
 
 
