@@ -92,5 +92,15 @@ relocalise-s = [0.04, 0.2]
   EXPECT_NE(told[0], told[1]) << "a drive on which it makes no difference";
 }
 
+TEST(MatchDrive, AsksWhetherToGoOnWhileTheMapIsFilled) {
+  const DescribedPair pair = street();
+  std::size_t asked = 0;
+  bool stepped = false;
+  const auto between = [&] { asked += stepped ? 0 : 1; };
+  const auto report = [&](const FrameReport& /*report*/) { stepped = true; };
+  (void)program::match_drive({}, pair.reference, pair.query, {nullptr, between, report});
+  EXPECT_GE(asked, places / MatcherConfig::most_frames_at_once);
+}
+
 }  // namespace
 }  // namespace seqloop::experiment

@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -220,6 +221,45 @@ class Lives(unittest.TestCase):
         self.assertEqual(sorted(frames), list(range(200)))
         self.assertEqual(reports[50].newest, 50)
         self.assertIn("Match(place=", repr([report.answers for report in reports]))
+
+    def test_a_drive_that_is_refused_leaves_the_map_empty(self) -> None:
+        # Of the built-in descriptor's size, whose statistics are known, and without any: each place is kept as it comes.
+        for size, settings in ((735, {}), (48, {"standardise": False}), (48, {})):
+            first, again = drives(60, size)
+            places = seqloop.PlaceMap(50, size, ds=10, **settings)
+            with self.assertRaisesRegex(seqloop.SetupError, "raise max_places"):
+                places.add_drive(first)
+            self.assertEqual((len(places), places.capacity), (0, 50))
+            places.add_drive(first[:50])
+            detector = seqloop.Detector(places)
+            answers = [answer for row in again[:50] for answer in detector.step(row).answers] + detector.finish()
+            matches = seqloop.match(first[:50], again[:50], ds=10, **settings)
+            self.assertEqual(sum(answer.gate == "match" for answer in answers), matches.accepted.sum())
+            self.assertGreater(matches.accepted.sum(), 30)
+
+    def test_control_c_ends_what_takes_long(self) -> None:
+        first, _ = drives(12_000, 735)
+        places = seqloop.PlaceMap(len(first), 735)
+        called: list[bool] = []
+
+        def interrupt() -> None:
+            begun.wait()
+            os.kill(os.getpid(), signal.SIGINT)
+
+        for call in (lambda: places.add_drive(first), lambda: seqloop.match(first, first[:30]) and called.append(True)):
+            begun = threading.Event()
+            thread = threading.Thread(target=interrupt)
+            thread.start()
+            try:
+                with self.assertRaises(KeyboardInterrupt):
+                    begun.set()
+                    call()
+                    called.append(True)
+            finally:
+                thread.join()
+        # Where the interruption came in time, the map is as it was, and can be filled.
+        self.assertEqual((len(places), called), (0, []))
+        places.add_drive(first[:200])
 
     def test_what_a_map_refuses(self) -> None:
         reference, _ = drives()

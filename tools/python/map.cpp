@@ -22,6 +22,9 @@ namespace py = pybind11;
 
 using Unlocked = py::gil_scoped_release;
 
+// The interpreter's lock may be others' for milliseconds.
+constexpr std::uint64_t frames_between_looks = 64;
+
 std::size_t size_of(std::int64_t value) {
   return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
 }
@@ -119,7 +122,16 @@ void Map::add_drive(const Array& descriptors) {
   }
   files::DescriptorSource source(std::move(*drive));
   program::Progress silent;
-  program::fill_map(map_, source, nullptr, config_, silent);
+  const auto look = [](const Frame& frame) {
+    if (frame.index % frames_between_looks == 0) look_for_interruption();
+  };
+  try {
+    program::fill_map(map_, source, nullptr, config_, silent, look);
+  } catch (...) {  // a part of a drive is none to localise in
+    map_ = PlaceMap(config_, {map_.capacity(), map_.descriptor_size()});
+    opencv::expect_builtin(map_);
+    throw;
+  }
 }
 
 std::size_t Map::size() {

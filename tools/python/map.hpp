@@ -33,7 +33,7 @@ class Map {
                                                  const std::string& describer,
                                                  const pybind11::kwargs& settings);
 
-  /// Fills it with a drive to localise in. Throws SetupError.
+  /// Fills it with a drive to localise in. Throws SetupError, KeyboardInterrupt; then it is empty.
   void add_drive(const Array& descriptors);
 
   [[nodiscard]] std::size_t size();

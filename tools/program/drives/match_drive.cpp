@@ -98,13 +98,16 @@ MatchedDrive match_frames(Detector& detector, const MatcherConfig& config,
 }
 
 PlaceMap map_for(const MatcherConfig& config, std::optional<files::Matrix> reference,
-                 const files::Matrix& query) {
+                 const files::Matrix& query, const std::function<void()>& between) {
   PlaceMap map(config, {reference ? reference->rows : query.rows, query.columns});
   opencv::expect_builtin(map);
   if (reference) {
     files::DescriptorSource drive(std::move(*reference));
     Progress silent;
-    (void)fill_map(map, drive, nullptr, config, silent);
+    const auto look = [&between](const Frame& frame) {
+      if (between && frame.index % MatcherConfig::most_frames_at_once == 0) between();
+    };
+    (void)fill_map(map, drive, nullptr, config, silent, look);
   }
   return map;
 }
@@ -113,7 +116,7 @@ MatchedDrive match_drive(MatcherConfig config, std::optional<files::Matrix> refe
                          const files::Matrix& query, const MatchWatch& watch) {
   // A recording is there whole, so that places can be read once for many frames.
   config.frames_at_once = MatcherConfig::most_frames_at_once;
-  PlaceMap map = map_for(config, std::move(reference), query);
+  PlaceMap map = map_for(config, std::move(reference), query, watch.between);
   Detector detector(config, map);
   return match_frames(detector, config, query, watch);
 }

@@ -47,9 +47,10 @@ void check_match(Faults& faults, const MatcherConfig& config, const files::Matri
                  const files::Matrix& query);
 
 /// The map that a recording is matched in: of the reference or, without one, empty, with room for
-/// the recording itself.
+/// the recording itself. @param between as in MatchWatch
 [[nodiscard]] PlaceMap map_for(const MatcherConfig& config, std::optional<files::Matrix> reference,
-                               const files::Matrix& query);
+                               const files::Matrix& query,
+                               const std::function<void()>& between = {});
 
 /// Steps through a recording whose rows are of unit length where Euclid compares.
 /// @param config the detector's; `frames_at_once` of them are taken together
