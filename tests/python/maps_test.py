@@ -134,9 +134,10 @@ class Maps(unittest.TestCase):
         merged = self.work / "merged.seqloop"
         self.assertEqual(seqloop.merge_maps(files, merged), [0, 200])
         self.assertEqual(content(merged), content(self.work / "theirs.seqloop"))
-        for files, words in ((files, "such a file already"), ([], "none to merge")):
+        for files, out, words in ((files, merged, "such a file already"), ([], merged, "none to merge"),
+                                  (files, "", "out: its name is empty")):
             with self.assertRaisesRegex(seqloop.SetupError, words):
-                seqloop.merge_maps(files, merged)
+                seqloop.merge_maps(files, out)
         numpy.save(self.work / "drive.npy", self.drive[:, :9] / numpy.linalg.norm(self.drive[:, :9], axis=1)[:, None])
         self.match(self.work / "small.seqloop", "drive")
         with self.assertRaisesRegex(seqloop.SetupError, "cannot be compared"):
@@ -190,13 +191,16 @@ class Maps(unittest.TestCase):
             self.assertIn(str(os.getpid()), told.stderr, "who holds it")
             for row in self.again[:30]:
                 detector.step(row)
-            with self.assertRaisesRegex(seqloop.SetupError, "time_s"):
-                detector.step(self.again[30], time_s=numpy.nan)
+            for time_s in (numpy.nan, 1e18, -1e300):
+                with self.assertRaisesRegex(seqloop.SetupError, "time_s"):
+                    detector.step(self.again[30], time_s=time_s)
             detector.finish()
-            with self.assertRaisesRegex(seqloop.SetupError, "its drive is over"):
-                detector.step(self.again[30])
-        for call in (lambda: detector.step(self.again[30]), lambda: places.where(0), lambda: places.saved,
-                     lambda: seqloop.Detector(places)):
+            for call in (lambda: detector.step(self.again[30]), lambda: detector.skip(3)):
+                with self.assertRaisesRegex(seqloop.SetupError, "its drive is over"):
+                    call()
+            self.assertEqual(len(places), 230)
+        for call in (lambda: detector.step(self.again[30]), lambda: detector.skip(3), lambda: places.where(0),
+                     lambda: places.saved, lambda: seqloop.Detector(places)):
             with self.assertRaisesRegex(seqloop.SetupError, "it is closed"):
                 call()
         self.assertEqual(seqloop.map_info(file).sessions[1].frames, 30)
@@ -228,7 +232,7 @@ class Maps(unittest.TestCase):
             self.assertEqual(places.where(7), ("caf\ufffd", 7))
 
     def test_a_full_disk_is_told_and_tried_again(self) -> None:
-        file = self.work / "map.seqloop"
+        file = self.work / os.fsdecode(b"map\xff.seqloop")
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         with self.open(file, session="monday", save_every_s=3600.0) as places:
             detector = seqloop.Detector(places)
@@ -237,7 +241,7 @@ class Maps(unittest.TestCase):
             _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
             resource.setrlimit(resource.RLIMIT_FSIZE, (4096, most))
             try:
-                with self.assertRaisesRegex(OSError, "not all of the drive is saved"):
+                with self.assertRaisesRegex(OSError, "not all of the drive is saved: .*map\ufffd.seqloop: "):
                     detector.finish()
             finally:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))

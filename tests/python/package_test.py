@@ -119,8 +119,29 @@ class Settings(unittest.TestCase):
         reference, query = drives()
         usual = as_csv(seqloop.match(reference, query, ds=10, vmin=.9, standardise=False))
         for same in ({"ds": "10", "vmin": "0.9", "standardise": "off"},
-                     {"ds": numpy.int64(10), "vmin": numpy.float32(.9), "standardise": False, "k": None}):
+                     {"ds": numpy.int64(10), "vmin": numpy.float32(.9), "standardise": False, "k": None},
+                     {"ds": 10, "vmin": .9, "standardise": numpy.bool_(False)}):
             self.assertEqual(as_csv(seqloop.match(reference, query, **same)), usual)
+        with self.assertRaisesRegex(seqloop.SetupError, r"ds: \[\[10\]\] is not of its type"):
+            seqloop.match(reference, query, ds=[[10]])
+
+    def test_names_that_are_no_utf8(self) -> None:
+        reference, query = drives()
+        file = os.fsdecode(b"/nowhere/\xff.onnx")
+        for call in (lambda: seqloop.Describer(model=file), lambda: seqloop.Describer(model=pathlib.Path(file)),
+                     lambda: seqloop.evaluate(seqloop.match(reference, query), file),
+                     lambda: seqloop.map_info(file), lambda: seqloop.PlaceMap.open(file, 9)):
+            with self.assertRaises(seqloop.SetupError) as raised:
+                call()
+            self.assertIn("/nowhere/\ufffd.onnx", str(raised.exception))
+            self.assertIn("/nowhere/\ufffd.onnx", raised.exception.faults[0][0])
+        for wrong in ({"method": "\udcff"}, {"\udcff": 3}):
+            with self.assertRaisesRegex(seqloop.SetupError, "\ufffd"):
+                seqloop.match(reference, query, **wrong)
+
+    def test_commands_in_messages_are_the_programs(self) -> None:
+        with self.assertRaisesRegex(seqloop.SetupError, "`seqloop run --map`"):
+            seqloop.map_info("/nowhere")
 
     def test_a_model_that_is_not_there(self) -> None:
         with self.assertRaises(seqloop.SetupError) as raised:
@@ -141,13 +162,17 @@ class Arrays(unittest.TestCase):
         for descriptor, words in ((self.query[0].astype(numpy.float64), "float64.*ascontiguousarray"),
                                   (self.query[0].astype(">f4"), "ascontiguousarray"),
                                   (wide[:, 0], "side by side"),
+                                  (numpy.frombuffer(b"x" + self.query[0].tobytes(), numpy.float32, offset=1),
+                                   "address for floats.*numpy.require"),
                                   (self.query[0][:9], r"\(9,\)"),
                                   (self.query[:1], r"\(1, 48\)"),
                                   (numpy.zeros((), numpy.float32), r"\(\)"),
                                   (self.query[0] * 2, "length is 2")):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 self.detector.step(descriptor)
-        self.assertEqual(self.detector.step(self.query[0]).newest, 0, "what was refused is no frame")
+        odd = numpy.frombuffer(b"x" + self.query[0].tobytes(), numpy.float32, offset=1)
+        report = self.detector.step(numpy.require(odd, numpy.float32, "CA"))
+        self.assertEqual(report.newest, 0, "what was refused is no frame")
         with self.assertRaises(TypeError):
             self.detector.step("descriptor")
 

@@ -21,11 +21,13 @@ std::string keyword(std::string name) {
   return name;
 }
 
-/// `--decide-by uniqueness` becomes `decide_by uniqueness`.
+/// `--decide-by uniqueness` becomes `decide_by uniqueness`; a command between ` and ` stays one.
 std::string in_keywords(std::string_view text) {
   std::string out;
+  bool command = false;
   for (std::size_t at = 0; at < text.size();) {
-    const bool flag = text.substr(at).starts_with("--") && at + 2 < text.size() &&
+    if (text[at] == '`') command = !command;
+    const bool flag = !command && text.substr(at).starts_with("--") && at + 2 < text.size() &&
                       text[at + 2] >= 'a' && text[at + 2] <= 'z';
     if (!flag) {
       out += text[at++];
@@ -46,27 +48,42 @@ Fault in_keywords(const Fault& fault) {
           in_keywords(fault.remedy)};
 }
 
+bool is_list(const py::handle& value) {
+  return py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value);
+}
+
+/// Text as the command line would have it: what Python could not read of a file's name is what it
+/// was. Throws UnicodeEncodeError: it is nothing that was read.
+std::string bytes(const py::handle& text) {
+  const auto encoded = py::reinterpret_steal<py::bytes>(
+      PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape"));
+  if (!encoded) throw py::error_already_set();
+  return encoded;
+}
+
 /// A value as the command line would have it; none where its type has no such form.
 std::optional<std::string> value_text(const py::handle& value, ValueKind kind) {
-  if (py::isinstance<py::bool_>(value)) {
-    const bool on = value.cast<bool>();
+  // Python's own, or NumPy's.
+  py::detail::make_caster<bool> truth;
+  if (!value.is_none() && truth.load(value, false)) {
+    const bool on = py::detail::cast_op<bool>(truth);
     if (kind == ValueKind::flag) return on ? "true" : "false";
     if (kind == ValueKind::on_off) return on ? "on" : "off";
     return std::nullopt;
   }
   if (kind == ValueKind::flag) return std::nullopt;
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) {
+  if (py::isinstance<py::str>(value)) return bytes(value);
+  if (is_list(value)) {
     std::string text;
     for (const py::handle& each : value) {
-      const auto one = value_text(each, kind);
+      const auto one = is_list(each) ? std::nullopt : value_text(each, kind);
       if (!one) return std::nullopt;
       text += (text.empty() ? "" : kind == ValueKind::size ? "x" : ",") + *one;
     }
     return text;
   }
   if (py::hasattr(value, "__fspath__")) {
-    return py::module_::import("os").attr("fsdecode")(value).cast<std::string>();
+    return py::module_::import("os").attr("fsencode")(value).cast<std::string>();
   }
   const py::object number = py::module_::import("numbers").attr("Number");
   if (!py::isinstance(value, number)) return std::nullopt;
@@ -82,7 +99,7 @@ Faults set_options(const OptionTable& options, const py::kwargs& given) {
   for (const Option& option : options.options()) names.push_back(option.name);
   for (const auto& [key, value] : given) {
     if (value.is_none()) continue;
-    const auto spelt = key.cast<std::string>();
+    const std::string spelt = bytes(key);
     std::string name = spelt;
     std::ranges::replace(name, '_', '-');
     const Option* option = options.find(name);
@@ -119,6 +136,8 @@ py::str readable(std::string_view text) {
   return py::reinterpret_steal<py::str>(decoded);
 }
 
+void set_os_error(std::string_view text) { PyErr_SetObject(PyExc_OSError, readable(text).ptr()); }
+
 void translate_faults(const py::object& error) {
   static py::object* const type = new py::object(error);  // as long as the process lives
   py::register_local_exception_translator([](std::exception_ptr thrown) {
@@ -129,10 +148,11 @@ void translate_faults(const py::object& error) {
       py::list listed;
       for (const Fault& fault : setup.faults()) {
         const Fault said = in_keywords(fault);
-        listed.append(py::make_tuple(said.what, said.why, said.remedy));
+        listed.append(
+            py::make_tuple(readable(said.what), readable(said.why), readable(said.remedy)));
         faults.push_back(said);
       }
-      py::object instance = (*type)(SetupError(std::move(faults)).what());
+      py::object instance = (*type)(readable(SetupError(std::move(faults)).what()));
       instance.attr("faults") = listed;
       PyErr_SetObject(type->ptr(), instance.ptr());
     }
@@ -140,8 +160,10 @@ void translate_faults(const py::object& error) {
 }
 
 bool is_plain(const Array& array) {
+  constexpr auto needed = static_cast<unsigned>(py::array::c_style) |
+                          static_cast<unsigned>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
   return py::isinstance<py::array_t<float>>(array) &&
-         (static_cast<unsigned>(array.flags()) & static_cast<unsigned>(py::array::c_style)) != 0;
+         (static_cast<unsigned>(array.flags()) & needed) == needed;
 }
 
 std::span<const float> descriptor(const Array& array, std::size_t size) {
@@ -154,12 +176,17 @@ std::span<const float> descriptor(const Array& array, std::size_t size) {
     throw SetupError({"descriptor", fmt::format("its shape is {}, the map's is ({},)", shape, size),
                       "give one descriptor, of the describer that made the map"});
   }
-  throw SetupError({"descriptor",
-                    fmt::format("it is {}{}", py::str(array.dtype()).cast<std::string>(),
-                                (static_cast<unsigned>(array.flags()) & py::array::c_style) != 0
-                                    ? ""
-                                    : ", and its values do not lie side by side"),
-                    "numpy.ascontiguousarray(descriptor, numpy.float32)"});
+  const auto flags = static_cast<unsigned>(array.flags());
+  if ((flags & py::detail::npy_api::NPY_ARRAY_ALIGNED_) == 0) {
+    throw SetupError({"descriptor", "it does not lie at an address for floats",
+                      "numpy.require(descriptor, numpy.float32, 'CA')"});
+  }
+  throw SetupError(
+      {"descriptor",
+       fmt::format(
+           "it is {}{}", py::str(array.dtype()).cast<std::string>(),
+           (flags & py::array::c_style) != 0 ? "" : ", and its values do not lie side by side"),
+       "numpy.ascontiguousarray(descriptor, numpy.float32)"});
 }
 
 void look_for_interruption() {

@@ -41,15 +41,18 @@ template <class Settings>
 /// Text of a file, in which what is no UTF-8 becomes U+FFFD.
 [[nodiscard]] pybind11::str readable(std::string_view text);
 
+/// Sets Python's error to an OSError. Its text may hold a file's name, which may be no UTF-8.
+void set_os_error(std::string_view text);
+
 /// From now on SetupError arrives in Python as `error`, of which `faults` holds a tuple
 /// (what, why, remedy) for each fault, flags spelt as keyword arguments.
 void translate_faults(const pybind11::object& error);
 
-/// Whether an array is float32 and lies in C order, so that it needs no copy.
+/// Whether an array is float32 and lies in C order where floats may lie, so that it needs no copy.
 [[nodiscard]] bool is_plain(const Array& array);
 
 /// A descriptor, where it lies. @param size D
-/// Throws SetupError: it is not float32 [D] in C order.
+/// Throws SetupError: it is not float32 [D] in C order, where floats may lie.
 [[nodiscard]] std::span<const float> descriptor(const Array& array, std::size_t size);
 
 /// An array that takes over what was computed.

@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -28,6 +30,9 @@ using Unlocked = py::gil_scoped_release;
 // Of a map in a file, where no time is given; as `seqloop match` has it.
 constexpr double frames_a_second = 10.0;
 
+// A map in a file has nanoseconds, in 64 bits.
+constexpr double most_seconds = 9.2e9;
+
 class Stepper {
  public:
   explicit Stepper(Map& map) : map_(&map) {
@@ -44,15 +49,16 @@ class Stepper {
     if (time_s && !std::isfinite(*time_s)) {
       throw SetupError({"time_s", "it is not finite", "give seconds, or leave it out"});
     }
+    if (time_s && std::abs(*time_s) > most_seconds) {
+      throw SetupError({"time_s", fmt::format("{} s are more than 290 years", *time_s),
+                        "give seconds, not nanoseconds"});
+    }
     std::optional<std::string> trouble;
     Report report;
     {
       const Unlocked unlocked;
       const std::scoped_lock lock(guard());
-      program::LastingMap* const file = kept();
-      if (file != nullptr && rest_) {
-        throw SetupError({"detector", "its drive is over, and saved", "open the map again"});
-      }
+      program::LastingMap* const file = kept_on();
       if (map_->config().difference == Difference::euclidean) check_length(values);
       stepped_ = true;
       report.report = detector_->step(values);
@@ -72,6 +78,7 @@ class Stepper {
   void skip(std::uint64_t frames) {
     const Unlocked unlocked;
     const std::scoped_lock lock(guard());
+    static_cast<void>(kept_on());
     detector_->skip(frames);
   }
 
@@ -86,7 +93,7 @@ class Stepper {
     const auto unsaved = file != nullptr ? file->finish(*detector_, *rest_) : std::nullopt;
     if (unsaved) {
       const py::gil_scoped_acquire locked;
-      PyErr_SetString(PyExc_OSError, ("not all of the drive is saved: " + *unsaved).c_str());
+      set_os_error("not all of the drive is saved: " + *unsaved);
       throw py::error_already_set();
     }
     return *rest_;
@@ -119,9 +126,19 @@ class Stepper {
     return map_->config().use == Use::close_loops ? map_->file() : nullptr;
   }
 
+  /// The same, for frames that are still to come. Throws SetupError: the drive is over.
+  [[nodiscard]] program::LastingMap* kept_on() {
+    program::LastingMap* const file = kept();
+    if (file != nullptr && rest_) {
+      throw SetupError({"detector", "its drive is over, and saved", "open the map again"});
+    }
+    return file;
+  }
+
   /// A report is not lost where warnings are errors.
   static void warn(const std::string& trouble) {
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, trouble.c_str(), 1) != 0) PyErr_WriteUnraisable(nullptr);
+    const auto text = readable(trouble).cast<std::string>();
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) PyErr_WriteUnraisable(nullptr);
   }
 
   /// What a detector takes for a frame that could not be read is more likely a mistake here.

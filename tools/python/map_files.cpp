@@ -45,6 +45,7 @@ py::list check(const std::filesystem::path& file) {
 
 std::vector<std::uint64_t> merge(const std::vector<std::filesystem::path>& maps,
                                  const std::filesystem::path& out) {
+  if (out.empty()) throw SetupError({"out", "its name is empty", "name a file"});
   const Unlocked unlocked;
   return program::merge_maps(maps, out, look_for_interruption);
 }
@@ -57,7 +58,7 @@ void add_map_files(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const sqlite::SaveError& error) {
-      PyErr_SetString(PyExc_OSError, error.what());
+      set_os_error(error.what());
     }
   });
   module.def("map_info", &info, py::arg("file"));
