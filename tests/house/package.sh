@@ -95,6 +95,8 @@ echo "in a bare Debian: $version"
 for page in seqloop seqloop-run seqloop-match seqloop-camera; do
   [[ $(zcat "$root/usr/share/man/man1/$page.1.gz") == *'SH SYNOPSIS'* ]] || { echo "no manual page $page"; exit 1; }
 done
+[[ $(zcat "$root/usr/share/man/man1/seqloop-map.1.gz") == *$'\n  seqloop map check FILE\n  seqloop map recover'* ]] ||
+  { echo "what seqloop map does is no table in its manual page"; exit 1; }
 inside python3 - <<'END'
 import numpy
 import seqloop
