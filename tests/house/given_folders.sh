@@ -1,13 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The tools take a folder as it is named where they are called. Nothing is built: what they call
-# first is stood in for, and notes what they made of the name.
+# first is stood in for, and notes what they made of the name. A flag is no folder.
 # Usage: given_folders.sh SOURCE
 set -eu
 work=$(realpath "$(mktemp -d)")
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/checkout/tools" "$work/bin" "$work/here"
-for tool in demo docs package cross tidy; do
+for tool in demo docs package cross tidy test; do
   cp "$1/tools/$tool" "$work/checkout/tools"
 done
 printf '#!/bin/sh\nexit 9\n' >"$work/bin/cmake"
@@ -23,6 +23,20 @@ for call in 'sh demo out' 'bash docs out' 'bash package out' 'bash cross aarch64
     ! grep -q "=$work/here/out\$" "$work/said"; then
     cat "$work/said"
     echo "tools/$tool $*, called in $work/here, does not take $work/here/out"
+    exit 1
+  fi
+done
+for call in 'sh demo --help' 'bash docs -h' 'bash package --help' 'bash cross --help' 'bash cross aarch64 --help' \
+  'sh tidy --help' 'bash test --help' 'bash test unit' 'bash test -L'; do
+  # shellcheck disable=SC2086 # a word each
+  set -- $call
+  shell=$1 tool=$2
+  shift 2
+  code=0
+  PATH=$work/bin:$PATH $shell "../checkout/tools/$tool" "$@" >"$work/said" 2>&1 || code=$?
+  if [ "$code" != 2 ] || ! grep -q "^usage: .*$tool" "$work/said"; then
+    cat "$work/said"
+    echo "tools/$tool $* does not say how it is used"
     exit 1
   fi
 done
