@@ -53,6 +53,14 @@ class Protocol(unittest.TestCase):
         self.assertGreater(recall["our descriptor, our matcher"], .95)
         self.assertGreater(recall["another descriptor, our matcher"], .9)
         self.assertLess(recall["our descriptor, dot product"], .5)
+        # The page has the same numbers; another machine's sums may end a little otherwise.
+        printed = [[float(value) for value in row] for row in re.findall(r"  +([01]\.\d+)  +([.\d]+)  +([.\d]+)$", said,
+                                                                         re.MULTILINE)]
+        table = (SOURCE / "tools/python/README.md").read_text().split("| recall@1 |")[1]
+        page = [[float(value) for value in row] for row in re.findall(r"^\|.*\| ([.\d]+) \| ([.\d]+) \| ([.\d]+) \|$", table,
+                                                                      re.MULTILINE)]
+        self.assertEqual(len(page), 4)
+        self.assertLess(numpy.abs(numpy.array(printed) - numpy.array(page)).max(), .005, page)
         self.assertRegex(said, r"accepted: (19\d|200) of 200 frames, precision 1.000")
 
 
