@@ -36,8 +36,10 @@ inline std::string inner_page(std::size_t page_size, std::size_t child) {
   return page;
 }
 
-/// Damages an SQLite file so that a table seems to have each of its rows 250,000 times.
-inline void lead_in_circles(const std::filesystem::path& file, const std::string& table) {
+/// Damages an SQLite file so that a table seems to have each of its rows 500 times, and that so
+/// often as it has levels of inner pages then: with five, no computer reads it to its end.
+inline void lead_in_circles(const std::filesystem::path& file, const std::string& table,
+                            std::size_t levels = 2) {
   sqlite3* database = nullptr;
   sqlite3_stmt* row = nullptr;
   sqlite3_open(file.c_str(), &database);
@@ -52,9 +54,13 @@ inline void lead_in_circles(const std::filesystem::path& file, const std::string
   const std::size_t size = static_cast<std::size_t>(static_cast<unsigned char>(bytes[16])) << 8U |
                            static_cast<std::size_t>(static_cast<unsigned char>(bytes[17]));
   const std::size_t pages = bytes.size() / size;
-  bytes += inner_page(size, pages + 2) + bytes.substr((root - 1) * size, size);
+  const std::string rows = bytes.substr((root - 1) * size, size);
   bytes.replace((root - 1) * size, size, inner_page(size, pages + 1));
-  put(bytes, 28, pages + 2, 4);
+  for (std::size_t level = 1; level < levels; ++level) {
+    bytes += inner_page(size, pages + level + 1);
+  }
+  bytes += rows;
+  put(bytes, 28, pages + levels, 4);
   std::ofstream(file, std::ios::binary) << bytes;
 }
 

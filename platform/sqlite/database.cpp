@@ -9,6 +9,23 @@ namespace {
 // A reader that closes, or a checkpoint, holds a lock for moments.
 constexpr int wait_ms = 2000;
 
+// Of SQLite's machine, after which it is asked whether it goes on.
+constexpr int steps_at_once = 1000;
+
+/// Steps that one statement may take. Of a map of nothing but links, SQLite 3.40's own check takes
+/// one a byte, and nothing takes more. What is not in the file yet is in SQLite's cache, of 2 MB.
+std::uint64_t most_steps(sqlite3* handle) {
+  std::uint64_t bytes = std::uint64_t{2} << 20U;
+  const char* file = sqlite3_db_filename(handle, "main");
+  for (const char* part : {file, sqlite3_filename_wal(file)}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(part, error);
+    if (!error) bytes += size;
+  }
+  constexpr std::uint64_t a_byte = 10;
+  return a_byte * bytes;
+}
+
 }  // namespace
 
 Fault fault_of(const std::filesystem::path& path, const DatabaseError& error) {
@@ -55,6 +72,7 @@ Database::Database(const std::filesystem::path& path, int flags, const char* vfs
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    sqlite3_progress_handler(handle_, steps_at_once, &Database::stop_circles, this);
     execute("PRAGMA cell_size_check = ON");
   } catch (...) {
     sqlite3_close_v2(handle_);
@@ -66,10 +84,24 @@ Database::~Database() { sqlite3_close_v2(handle_); }
 
 void Database::check(int code) const {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
-  throw DatabaseError(sqlite3_extended_errcode(handle_), sqlite3_errmsg(handle_));
+  const int extended = sqlite3_extended_errcode(handle_);
+  // Nobody else interrupts it.
+  if (extended == SQLITE_INTERRUPT) {
+    throw DatabaseError(SQLITE_CORRUPT, "it has more rows than there is room for in it");
+  }
+  throw DatabaseError(extended, sqlite3_errmsg(handle_));
+}
+
+int Database::stop_circles(void* self) {
+  auto& database = *static_cast<Database*>(self);
+  database.steps_ += steps_at_once;
+  if (database.steps_ <= database.most_steps_) return 0;
+  database.most_steps_ = most_steps(database.handle_);  // it may have grown
+  return database.steps_ <= database.most_steps_ ? 0 : 1;
 }
 
 void Database::execute(const std::string& sql) {
+  begin_steps();
   check(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr));
 }
 
@@ -86,6 +118,7 @@ std::string Database::text(std::string_view sql) {
 }
 
 Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
+  database.begin_steps();
   database.check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()),
                                     &statement_, nullptr));
 }
@@ -93,13 +126,17 @@ Statement::Statement(const Database& database, std::string_view sql) : database_
 Statement::~Statement() { sqlite3_finalize(statement_); }
 
 bool Statement::step() {
+  database_->begin_steps();
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
-  const int extended = sqlite3_extended_errcode(database_->handle());
-  const std::string message = sqlite3_errmsg(database_->handle());
-  sqlite3_reset(statement_);
-  throw DatabaseError(extended, message);
+  try {
+    database_->check(code);
+  } catch (...) {
+    sqlite3_reset(statement_);
+    throw;
+  }
+  return false;
 }
 
 bool Statement::next() {

@@ -55,8 +55,16 @@ class Database {
   /// Throws the newest error of the connection, if the code is one.
   void check(int code) const;
 
+  /// What follows may take as many steps of SQLite's machine as a file of this size can need: where
+  /// pages lead in circles, one statement takes steps without end, and SQLite does not see it.
+  void begin_steps() const noexcept { steps_ = 0; }
+
  private:
+  static int stop_circles(void* self);
+
   sqlite3* handle_ = nullptr;
+  mutable std::uint64_t steps_ = 0;  ///< since `begin_steps`
+  std::uint64_t most_steps_ = 0;     ///< of a file as large as it was when last looked at
 };
 
 /// One SQL statement; parameters and columns are counted from 0.

@@ -200,6 +200,10 @@ std::uint64_t MapFile::add(const MapFile& from) {
 
 void MapFile::compact() {
   State& map = *state_;
+  // Rows that come again and again would be written as often before SQLite is stopped.
+  const bool sound =
+      map.reading([&map] { return map.database.text("PRAGMA quick_check(1)") == "ok"; });
+  if (!sound) throw SetupError(map.damaged("its structure"));
   map.saving([&] {
     std::vector<std::int64_t> blocks;
     Statement rows(map.database, "SELECT first FROM block ORDER BY first");

@@ -288,6 +288,50 @@ TEST(MapInCircles, EndsWhereRowsComeAgain) {
   }
 }
 
+TEST(MapInCircles, IsWorkedOnNoLongerThanItHasRoomForRows) {
+  const test::TemporaryFolder folder(in_memory());
+  const Sample sample;
+  using Work = std::function<void(MapFile&)>;
+  const std::initializer_list<std::pair<const char*, Work>> works{
+      {"check", [](MapFile& map) { (void)map.check(); }},
+      {"forget", [](MapFile& map) { map.forget("monday"); }},
+      {"compact", [](MapFile& map) { map.compact(); }},
+      {"retire", [](MapFile& map) { (void)map.retire("monday", 1, 4, {}, 1); }},
+      {"save", [](MapFile& map) {
+         test::save_sample(map, map.sessions().back().id, 90, 5, {1, 2, 3});
+       }}};
+  for (const char* table :
+       {"session", "statistics", "block", "removed", "link", "thumbnail", "holder", "map"}) {
+    for (const auto& [name, work] : works) {
+      SCOPED_TRACE(std::string(table) + ", " + name);
+      const fs::path file = folder.write("circles", sample.bytes());
+      test::lead_in_circles(file, table, 6);
+      // What they find is up to which rows they need; that they end is what is asked here.
+      try {
+        MapFile map = MapFile::open(file, std::nullopt);
+        work(map);
+      } catch (const SetupError&) {
+      } catch (const sqlite::SaveError&) {
+      }
+      for (const char* tail : {"", "-wal", "-shm", "-journal"}) fs::remove(file.string() + tail);
+    }
+  }
+}
+
+TEST(MapInCircles, SaysSo) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path file = folder.write("circles", Sample().bytes());
+  test::lead_in_circles(file, "link", 6);
+  MapFile map = MapFile::open(file, std::nullopt);
+  try {
+    (void)map.retire("monday", 1, 4, {}, 1);
+    FAIL() << "it has come to the end of what has none";
+  } catch (const sqlite::SaveError& error) {
+    EXPECT_TRUE(
+        test::says(error.what(), "damaged (it has more rows than there is room for in it)"));
+  }
+}
+
 TEST(MapRecovery, NeedsAMap) {
   const test::TemporaryFolder folder(in_memory());
   const std::string refused = test::setup_error([&] {

@@ -215,7 +215,7 @@ class MapFile {
   std::uint64_t add(const MapFile& from);
 
   /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.
-  /// Throws SaveError.
+  /// Throws SetupError: damaged; SaveError.
   void compact();
 
  private:
