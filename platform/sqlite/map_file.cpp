@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "sqlite/state.hpp"
 
 namespace seqloop::sqlite {
@@ -117,6 +119,21 @@ void MapFile::State::make(const MapForm& wanted) {
   transaction.commit();
 }
 
+bool MapFile::State::holds_nothing() const {
+  return std::ranges::all_of(sessions(), [](const SessionFacts& facts) {
+    return facts.frames == 0 && facts.places == 0 && !facts.statistics;
+  });
+}
+
+void MapFile::State::take_form(const MapForm& wanted) {
+  const std::vector<SessionFacts> begun = sessions();
+  form = wanted;
+  Transaction transaction(database);
+  for (const SessionFacts& facts : begun) save_session(facts);
+  save_map_row();
+  transaction.commit();
+}
+
 MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {
   if (form) {
     check_form(path, *form);
@@ -142,16 +159,16 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
     } else {
       check_kind(path, database);
       state->load_map_row();
-      if (form && *form != state->form) {
-        throw SetupError(other_form(path, state->form, *form));
-      }
     }
+    const bool other = form && *form != state->form;
+    if (other && !state->holds_nothing()) throw SetupError(other_form(path, state->form, *form));
     if (database.text("PRAGMA journal_mode = WAL") != "wal") {
       throw SetupError({path.string(), "this file system cannot keep a log beside the map",
                         "put the map on a local disk"});
     }
     state->writes = true;
     sign(database);
+    if (other) state->take_form(*form);
     return MapFile(std::move(state));
   } catch (const DatabaseError& error) {
     throw SetupError(fault_of(path, error));
@@ -199,6 +216,9 @@ MapFile::~MapFile() = default;
 void MapFile::drop_if_unused() noexcept { state_->drops = true; }
 const fs::path& MapFile::path() const noexcept { return state_->path; }
 const MapForm& MapFile::form() const noexcept { return state_->form; }
+bool MapFile::holds_nothing() const {
+  return state_->reading([this] { return state_->holds_nothing(); });
+}
 std::uint64_t MapFile::next_place() const {
   return static_cast<std::uint64_t>(state_->counts.next_place);
 }

@@ -77,6 +77,9 @@ struct MapFile::State {
   }
 
   void make(const MapForm& wanted);
+  [[nodiscard]] bool holds_nothing() const;
+  /// Of a map that holds nothing. Throws DatabaseError.
+  void take_form(const MapForm& wanted);
   void save_map_row();
   void load_map_row();
   void save_session(const SessionFacts& facts);

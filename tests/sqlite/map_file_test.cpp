@@ -540,6 +540,37 @@ TEST_F(Map, SaysWhatIsWrongWithAFile) {
   EXPECT_THROW(read.save(2, {}), sqlite::SaveError);
 }
 
+TEST_F(Map, ThatHoldsNothingTakesAnotherForm) {
+  sqlite::MapForm form = test::sample_form();
+  form.describer = "another";
+  { const MapFile map = MapFile::open(file(), form); }
+  {
+    MapFile map = open();
+    EXPECT_EQ(map.form(), test::sample_form());
+    (void)map.begin_session("killed", 7, "");
+  }
+  {
+    MapFile map = MapFile::open(file(), form);
+    EXPECT_EQ(map.form(), form);
+    EXPECT_TRUE(map.holds_nothing());
+    EXPECT_EQ(content(map).substr(0, 2), "0 ");
+  }
+  {
+    MapFile map = open();
+    test::save_sample(map, map.begin_session("monday", 7, ""), 0, 5);
+    EXPECT_FALSE(map.holds_nothing());
+  }
+  EXPECT_TRUE(says(setup_error([&] { (void)MapFile::open(file(), form); }), "described by"));
+  {
+    MapFile map = open();
+    map.forget("monday");
+  }
+  MapFile map = MapFile::open(file(), form);
+  EXPECT_EQ(map.next_place(), 5U) << "numbers are for ever";
+  EXPECT_EQ(map.sessions().size(), 1U);
+  EXPECT_EQ(map.check(), std::vector<std::string>());
+}
+
 TEST_F(Map, NamesTheBlockThatIsDamaged) {
   make();
   std::string bytes = test::read_all(file());

@@ -44,6 +44,11 @@ Keeper::Keeper(std::filesystem::path file, const FleetSettings& settings,
   std::error_code error;
   if (std::filesystem::file_size(path_, error) == 0 || error) return;
   file_ = sqlite::MapFile::open(path_, std::nullopt);
+  // Killed before it had saved a place, a keeper leaves a file that is like the first robot's.
+  if (file_->holds_nothing()) {
+    file_.reset();
+    return;
+  }
   know_sessions();
 }
 

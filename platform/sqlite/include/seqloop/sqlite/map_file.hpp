@@ -134,7 +134,8 @@ class MapFile {
   /// Opens a map to read. Throws SetupError: no such file, no map, of a newer version, damaged.
   [[nodiscard]] static MapFile read_only(const std::filesystem::path& path);
 
-  /// Opens a map to write; a file that is missing or empty becomes one.
+  /// Opens a map to write; a file that is missing or empty becomes one, and one that holds
+  /// nothing takes another form.
   /// @param form of what is to be saved; nothing: as the map's is, which must exist
   /// Throws SetupError as `read_only`, and: held by another process (which, on which machine), not
   /// writable, of another form.
@@ -152,6 +153,10 @@ class MapFile {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const MapForm& form() const noexcept;
+
+  /// Whether no session has a frame: all were forgotten, or whoever began them was killed. Nothing
+  /// has the map's form then. Throws SetupError: damaged.
+  [[nodiscard]] bool holds_nothing() const;
 
   /// All sessions, oldest first. Throws SetupError: damaged.
   [[nodiscard]] std::vector<SessionFacts> sessions() const;
