@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "sqlite/state.hpp"
 
@@ -61,6 +63,10 @@ void check_file(const fs::path& path) {
   struct stat status {};
   const std::string name = path.string();
   if (::stat(path.c_str(), &status) != 0) {
+    if (errno != ENOENT && errno != ENOTDIR) {
+      throw SetupError({name, "cannot be looked at: " + std::string(std::strerror(errno)),
+                        "look at its name, and at the rights of its folders"});
+    }
     throw SetupError(
         {name, "there is no such map", "name a map, or make one with `seqloop run --map`"});
   }
@@ -73,7 +79,14 @@ void check_file(const fs::path& path) {
 }  // namespace
 
 MapFile::State::~State() {
-  if (!writes) return;
+  if (!writes) {
+    // It could not become a map: the disk is full, or the name too long for a log beside it.
+    if (holder.made() && holder.is_at(path)) ::unlink(path.c_str());
+    return;
+  }
+  // Another file has the name now, and so has the log beside it, which SQLite would remove by name.
+  std::error_code error;
+  if (!holder.is_at(path) && fs::exists(path, error)) return;
   try {
     database.execute("DELETE FROM holder");
     // One file without a log beside it, where nobody reads it just now.
@@ -84,6 +97,15 @@ MapFile::State::~State() {
     }
   } catch (const DatabaseError&) {  // the log stays and is read with the file
   }
+}
+
+void MapFile::State::check_place() const {
+  if (holder.is_at(path)) return;
+  throw SaveError(
+      to_string(Fault{path.string(),
+                      "the map that is written is there no more: it was removed, moved "
+                      "or replaced",
+                      "put it back if it was moved; else end the run, and begin anew"}));
 }
 
 void MapFile::State::load_map_row() {
@@ -141,6 +163,12 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
     check_file(path);
   }
   Holder holder(path);
+  if (holder.made()) {
+    // What is beside a file that was just made is another's, which was removed: SQLite would share
+    // that one's memory with whoever writes it still.
+    std::error_code error;
+    for (const char* tail : {"-wal", "-shm", "-journal"}) fs::remove(path.string() + tail, error);
+  }
   try {
     auto state = std::make_unique<State>(path, std::move(holder),
                                          SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);

@@ -60,6 +60,7 @@ struct MapFile::State {
   template <class Part>
   void saving(Part part) {
     if (!writes) throw SaveError(path.string() + ": it was opened to read only");
+    check_place();
     if (sqlite3_get_autocommit(database.handle()) == 0) return part();  // within one of these
     const Counts before = counts;
     try {
@@ -76,6 +77,8 @@ struct MapFile::State {
     }
   }
 
+  /// Throws SaveError: nobody would find what is written now.
+  void check_place() const;
   void make(const MapForm& wanted);
   [[nodiscard]] bool holds_nothing() const;
   /// Of a map that holds nothing. Throws DatabaseError.

@@ -515,6 +515,8 @@ TEST_F(Map, SaysWhatIsWrongWithAFile) {
   };
   EXPECT_TRUE(says(refused(file("none")), "there is no such map"));
   EXPECT_TRUE(says(refused(folder_.path()), "is no file"));
+  EXPECT_TRUE(
+      says(refused(file(std::string(300, 'x'))), "cannot be looked at: File name too long"));
   EXPECT_TRUE(says(refused(folder_.write("empty", "")), "is empty"));
   EXPECT_TRUE(says(refused(folder_.write("text", std::string(9000, 'x'))), "no SeqLoop map"));
   std::string bytes = test::read_all(file());
@@ -634,6 +636,16 @@ TEST_F(Map, ADiskThatIsFullCostsNothingThatWasSaved) {
   EXPECT_EQ(numbers(map).size(), 110U);
 }
 
+TEST_F(Map, ForWhichThereIsNoRoomLeavesNoFile) {
+  test::RecordingVfs disk("nothing");
+  disk.refuse = [](What what) { return what == What::write ? SQLITE_FULL : SQLITE_OK; };
+  EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "the disk is full"));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  folder_.write("map.seqloop", "");
+  EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "the disk is full"));
+  EXPECT_TRUE(fs::exists(file())) << "it is somebody else's";
+}
+
 TEST_F(Map, ReadersGoOnWhileTheDiskStalls) {
   make();
   test::RecordingVfs disk("nothing");
@@ -714,6 +726,40 @@ TEST_F(Map, IsWrittenByOneProcessAtATime) {
   }
   MapFile map = open();
   EXPECT_EQ(map.sessions()[1].frames, 48U);
+}
+
+TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {
+  make();
+  const std::string before = content();
+  const auto refused = [](MapFile& map) {
+    try {
+      test::save_sample(map, 2, 44, 3);
+    } catch (const sqlite::SaveError& error) {
+      return std::string(error.what());
+    }
+    return std::string("it has saved");
+  };
+  {
+    MapFile map = open();
+    fs::rename(file(), file("elsewhere"));
+    EXPECT_TRUE(says(refused(map), "removed, moved or replaced"));
+    fs::rename(file("elsewhere"), file());
+    test::save_sample(map, 2, 44, 3);
+    EXPECT_NE(content(), before) << "it is back";
+  }
+  // Of another map that has come to its place, nothing is touched.
+  std::optional<MapFile> old = open();
+  test::save_sample(*old, 2, 48, 3);
+  fs::remove(file());
+  const Other other([this](const auto& done) {
+    MapFile map = open();
+    test::save_sample(map, map.begin_session("new", 7, ""), 0, 5);
+    done(true);
+  });
+  ASSERT_TRUE(other.well());
+  EXPECT_TRUE(says(refused(*old), "removed, moved or replaced"));
+  old.reset();
+  EXPECT_EQ(MapFile::read_only(file()).sessions().back().places, 5U);
 }
 
 TEST_F(Map, IsReadFromAFolderThatNobodyMayWriteTo) {
