@@ -142,9 +142,11 @@ void MapFile::State::make(const MapForm& wanted) {
 }
 
 bool MapFile::State::holds_nothing() const {
-  return std::ranges::all_of(sessions(), [](const SessionFacts& facts) {
+  const bool none_has_any = std::ranges::all_of(sessions(), [](const SessionFacts& facts) {
     return facts.frames == 0 && facts.places == 0 && !facts.statistics;
   });
+  Statement block(database, "SELECT first FROM block LIMIT 1");  // of a session that is lost
+  return none_has_any && !block.step();
 }
 
 void MapFile::State::take_form(const MapForm& wanted) {

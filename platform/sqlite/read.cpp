@@ -194,9 +194,13 @@ std::vector<SessionFacts> MapFile::sessions() const {
 void MapFile::read(const std::function<void(const PlaceBlock&)>& take,
                    const std::function<void(const std::string&)>& damaged) const {
   std::uint64_t missing = 0;
-  for (const SessionFacts& facts : sessions()) missing += facts.places;
+  const std::vector<SessionFacts> known = sessions();
+  for (const SessionFacts& facts : known) missing += facts.places;
   const auto counted = [&](const PlaceBlock& block) {
     missing -= block.records.size();
+    if (!damaged && std::ranges::find(known, block.session, &SessionFacts::id) == known.end()) {
+      throw SetupError(state_->damaged("the table of sessions"));
+    }
     take(block);
   };
   const GiveRows rows = [this](const TakeRow& take_row) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `seqloop map` as a user calls it.
+#include <sqlite3.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -27,6 +29,13 @@ class MapVerb : public test::Program {
     std::string text = test::content_of(MapFile::read_only(file(name)), fault);
     EXPECT_EQ(fault, "");
     return text;
+  }
+
+  void change(const std::string& name, const std::string& sql) const {
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(file(name).c_str(), &database), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(database);
   }
 
   /// Flips a bit of a place's bytes, of which there are 200, or of its thumbnail's 700.
@@ -132,6 +141,19 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   folder_.write("folder/map.json", "{}");
   expect_refused("import folder --out c", "map.json");
   expect_refused("import none --out c", "none/map.json: cannot be read; name a folder that");
+}
+
+TEST_F(MapVerb, LinksOfNoSessionAreNamedByExport) {
+  {
+    MapFile map = MapFile::open(file("a"), test::sample_form());
+    for (const char* session : {"monday", "tuesday"}) {
+      const std::int64_t id = map.begin_session(session, 7, "");
+      const std::vector<sqlite::SavedLink> visits{{id, 3, std::nullopt, 5, 0.9}};
+      map.save(id, {.frames = 4, .links = visits});
+    }
+  }
+  change("a", "DELETE FROM session WHERE id = 1");
+  expect_refused("export a --out x", "a: a link belongs to no session");
 }
 
 TEST_F(MapVerb, ForgetAndCompactMakeItSmaller) {

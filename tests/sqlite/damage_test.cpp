@@ -332,6 +332,19 @@ TEST(MapInCircles, SaysSo) {
   }
 }
 
+TEST(MapWithoutItsSessions, IsNotTakenForEmpty) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path file = folder.write("map", Sample().bytes());
+  change(file, "DELETE FROM session");
+  sqlite::MapForm form = test::sample_form();
+  form.describer = "another";
+  EXPECT_TRUE(test::says(test::setup_error([&] { (void)MapFile::open(file, form); }), "another"));
+  const MapFile map = MapFile::open(file, std::nullopt);
+  EXPECT_FALSE(map.holds_nothing());
+  EXPECT_TRUE(test::says(test::setup_error([&] { map.read([](const sqlite::PlaceBlock&) {}); }),
+                         "the table of sessions is damaged"));
+}
+
 TEST(MapRecovery, NeedsAMap) {
   const test::TemporaryFolder folder(in_memory());
   const std::string refused = test::setup_error([&] {

@@ -241,6 +241,10 @@ void export_map(const MapFile& map, const fs::path& folder) {
 
   table = std::string(links_header) + '\n';
   map.read_links([&](const sqlite::SavedLink& link) {
+    if (!numbers.contains(link.session)) {
+      throw SetupError({map.path().string(), "a link belongs to no session",
+                        "`seqloop map recover` copies what is whole into a new file"});
+    }
     table += fmt::format("{},{},{},{},{},{}\n", numbers.at(link.session), link.frame,
                          link.place ? 0 : 1, link.place.value_or(0), link.other, link.probability);
   });
