@@ -118,6 +118,18 @@ TEST_F(MapVerb, MergePutsMapsBehindEachOther) {
   EXPECT_FALSE(exists("d"));
 }
 
+TEST_F(MapVerb, WhatAKilledOneLeftIsRemoved) {
+  make("a");
+  for (const char* tail : {"-wal", "-shm", ".copy", ".copy-wal"}) {
+    folder_.write(".new.partial-12345" + std::string(tail), "left");
+  }
+  folder_.write(".new.partial-12345", "left");
+  folder_.write(".newer.partial-12345-wal", "another's");
+  expect(0, "recover a new", "new: 80 places");
+  EXPECT_EQ(listing().find(".new.partial"), std::string::npos) << listing();
+  EXPECT_TRUE(exists(".newer.partial-12345-wal"));
+}
+
 TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   make("a");
   {

@@ -4,9 +4,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "files/partial.hpp"
@@ -16,6 +18,30 @@
 namespace seqloop::program {
 
 namespace fs = std::filesystem;
+namespace {
+
+/// Removes what killed processes left beside partial maps that are removed themselves: a log may be
+/// as large as the map.
+void remove_abandoned_logs(const fs::path& path) {
+  const std::string begin = "." + path.filename().string() + ".partial-";
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  // `recover` works on a copy where the damaged map has a log.
+  constexpr std::array tails{"-wal",  "-shm",      "-journal",  //
+                             ".copy", ".copy-wal", ".copy-shm", ".copy-journal"};
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    for (const std::string_view tail : tails) {
+      if (!name.starts_with(begin) || !name.ends_with(tail)) continue;
+      const fs::path map = folder / name.substr(0, name.size() - tail.size());
+      std::error_code kept;
+      if (!fs::exists(map, kept) && !kept) fs::remove(entry->path(), kept);
+    }
+  }
+}
+
+}  // namespace
 
 NewMap::NewMap(fs::path path) : path_(std::move(path)) {
   const std::string name = path_.string();
@@ -28,6 +54,7 @@ NewMap::NewMap(fs::path path) : path_(std::move(path)) {
     throw SetupError({name, "cannot be made: " + std::string(std::strerror(errno)),
                       "look at the rights of its folder"});
   }
+  remove_abandoned_logs(path_);
   ::close(made.descriptor);  // an empty file becomes a map, and is locked as such
   partial_ = made.path;
 }
