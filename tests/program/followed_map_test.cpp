@@ -70,7 +70,7 @@ class FollowedMap : public ::testing::Test {
         const std::size_t count = detector.steps(rest, reports);
         for (const FrameReport& report : std::span(reports).first(count)) {
           map_->note(detector, report.newest, 7 + frame, static_cast<double>(frame) / 10, {},
-                     report.answers);
+                     report.answers, true);
           full += report.map_full;
           ++frame;
         }

@@ -318,6 +318,11 @@ TEST_F(LastingMaps, OfADriveThatCannotBeReadNothingStays) {
   for (const std::string map : {"old.seqloop", "new.seqloop"}) {
     expect_refused("run --source dark.npy --save-every-s 0.001 --map " + map, "can be read");
   }
+  // A full map that forgets has forgotten nothing for it. At 200 frames a second, much is saved.
+  expect_refused(
+      "run --source dark.npy --save-every-s 0.001 --map old.seqloop --max-places 120 --full-map "
+      "forget-oldest --pace live --fps 200",
+      "can be read");
   EXPECT_EQ(nlohmann::json::parse(run("map info old.seqloop --json").out)["sessions"], before);
   EXPECT_FALSE(exists("new.seqloop"));
 }

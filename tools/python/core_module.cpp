@@ -67,7 +67,7 @@ class Stepper {
         const std::uint64_t frame = report.report.newest;
         file->note(*detector_, frame, frame,
                    time_s.value_or(static_cast<double>(frame) / frames_a_second), {},
-                   report.answers);
+                   report.answers, !values.empty() && !blank(map_->config().difference, values));
         trouble = file->trouble();
       }
     }

@@ -116,8 +116,8 @@ class SqliteMap : public LastingMap {
   }
 
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-            const Image& image, std::span<const Answer> answers) noexcept override {
-    if (writer_) writer_->note(detector, counted, index, time_s, image, answers);
+            const Image& image, std::span<const Answer> answers, bool readable) noexcept override {
+    if (writer_) writer_->note(detector, counted, index, time_s, image, answers, readable);
   }
 
   [[nodiscard]] std::optional<std::string> finish(Detector& detector,

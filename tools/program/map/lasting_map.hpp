@@ -108,16 +108,19 @@ class LastingMap {
   /// What the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
   /// @param image its picture, where there is one
+  /// @param readable whether it has a descriptor that is not blank; until one has, nothing is saved
   /// Allocates: never; no system call.
   virtual void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-                    const Image& image, std::span<const Answer> answers) noexcept = 0;
+                    const Image& image, std::span<const Answer> answers,
+                    bool readable) noexcept = 0;
 
   /// The drive is over: saves the rest, however long that takes.
   /// @return why something could not be saved; nothing when all is
   [[nodiscard]] virtual std::optional<std::string> finish(Detector& detector,
                                                           std::span<const Answer> rest) = 0;
 
-  /// Instead of `finish`: nothing of the drive stays. Places that went for it are gone.
+  /// Instead of `finish`: nothing of the drive stays. A full map has lost the places that went for
+  /// it, if one of its frames was readable.
   /// Throws std::runtime_error: something stays, since the disk does not take it.
   virtual void discard() = 0;
 

@@ -77,7 +77,8 @@ void MapWriter::stop() {
 }
 
 void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-                     const Image& image, std::span<const Answer> answers) noexcept {
+                     const Image& image, std::span<const Answer> answers, bool readable) noexcept {
+  if (readable) readable_.store(true, std::memory_order_relaxed);
   for (; counted_ <= counted; ++counted_) {
     came(counted_) = {index - (counted - counted_), nanoseconds(time_s), 0.0, none};
   }
@@ -189,6 +190,7 @@ void MapWriter::work(double every_s) {
     wake_.wait_for(lock, std::chrono::duration<double>(share * every_s),
                    [this] { return stop_ || asked_; });
     asked_ = false;
+    if (!readable_.load(std::memory_order_relaxed)) continue;
     lock.unlock();
     save();
     lock.lock();

@@ -40,10 +40,13 @@ class MapWriter {
   /// Notes what the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
   /// @param image its picture, where there is one
+  /// @param readable whether it has a descriptor that is not blank. Until one has, nothing is
+  /// saved:
+  ///   of a full map, places would go for a drive that is discarded
   /// Work: log N and what the frame added, a thumbnail's pixels; every few times D copies.
   /// Allocates: never. No system call, no waiting.
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
-            const Image& image, std::span<const Answer> answers) noexcept;
+            const Image& image, std::span<const Answer> answers, bool readable) noexcept;
 
   /// The drive is over: saves the rest, however long that takes.
   /// @param rest answers of the detector's `finish`
@@ -147,6 +150,7 @@ class MapWriter {
   std::atomic<std::uint64_t> places_noted_{0};
   std::atomic<std::uint64_t> links_noted_{0};
   std::atomic<Handing> handing_{Handing::asked};
+  std::atomic<bool> readable_{false};  // a frame was
   sqlite::SavedStatistics handed_;
 
   std::optional<Thumbnails> thumbnails_;  // from the loop to the thread

@@ -120,7 +120,7 @@ void match(const MatchSettings& settings, Faults faults) {
   if (lasting) {
     watch.report = [&](const FrameReport& report) {
       lasting->note(detector, report.newest, report.newest,
-                    static_cast<double>(report.newest) / frames_a_second, {}, report.answers);
+                    static_cast<double>(report.newest) / frames_a_second, {}, report.answers, true);
     };
     watch.rest = [&](std::span<const Answer> rest) { unsaved = lasting->finish(detector, rest); };
   }

@@ -193,9 +193,12 @@ void run(const RunSettings& settings, Faults faults) {
       recorder.add(processed->report.newest, query);
       recorder.add(processed->report.answers);
     }
+    const std::span<const float> seen = processed->descriptor;
+    const bool is_blank = !seen.empty() && blank(setup.config.difference, seen);
     if (setup.map && processed->report.gate != Gate::no_frame) {
       setup.map->note(detector, processed->report.newest, processed->frame.index,
-                      processed->frame.time_s, processed->frame.image, processed->report.answers);
+                      processed->frame.time_s, processed->frame.image, processed->report.answers,
+                      !seen.empty() && !is_blank);
       if (const auto trouble_saving = setup.map->trouble()) progress.tell(*trouble_saving);
     }
     if (fleet) {
@@ -211,8 +214,7 @@ void run(const RunSettings& settings, Faults faults) {
     if (ros) ros->publish(*processed, state, summary, kept, clock.now());
     if (fleet && serving) serving->watch().publish(fleet->loops());
     if (fleet && ros) ros->publish(fleet->loops());
-    const std::span<const float> seen = processed->descriptor;
-    if (!seen.empty() && blank(setup.config.difference, seen)) ++blank_frames;
+    if (is_blank) ++blank_frames;
     lines_whole = attempt([&] { lines.add(*processed, state); });
     if (!attempt([&] { setup.loops->add(*processed); })) {
       progress.tell("the bag of loops cannot be written on, and is given up; the run goes on");
