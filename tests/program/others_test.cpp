@@ -232,7 +232,18 @@ TEST_F(OthersTest, SessionsWithoutEndAreBounded) {
   EXPECT_EQ(others_.places(), 100U);
   const std::vector<std::string> news = others_.news();
   ASSERT_EQ(news.size(), 2U);
-  EXPECT_EQ(news[1], "other robots have more than 1024 sessions: what is beyond is not heard");
+  EXPECT_EQ(
+      news[1],
+      "other robots have more than 1024 sessions: what is beyond is not heard; let a keeper's "
+      "map forget old ones (`seqloop map forget`)");
+}
+
+TEST_F(OthersTest, AKeeperWhoseMapHasMoreSessionsThanAreHeardHearsNoNewOnes) {
+  for (std::int64_t session = 0; session < 1'100; ++session) {
+    static_cast<void>(others_.resume({"b", "old", 1'000'000 + session}, {1, 0, 0, 0}));
+  }
+  EXPECT_FALSE(hear(1000, 0, &about_));
+  ASSERT_EQ(others_.news().size(), 1U);
 }
 
 TEST_F(OthersTest, NamesAreFitToBePrinted) {

@@ -160,10 +160,12 @@ Others::Session* Others::known(const dds::FleetPlace& place, const dds::FleetSes
   const auto found = sessions_.find(place.session);
   if (found != sessions_.end()) return &found->second;
   if (about == nullptr) return nullptr;
-  if (sessions_.size() == most_fleet_sessions) {
+  if (sessions_.size() >= most_fleet_sessions) {
     if (!std::exchange(crowded_, true)) {
-      tell(fmt::format("other robots have more than {} sessions: what is beyond is not heard",
-                       most_fleet_sessions));
+      tell(
+          fmt::format("other robots have more than {} sessions: what is beyond is not heard; let a "
+                      "keeper's map forget old ones (`seqloop map forget`)",
+                      most_fleet_sessions));
     }
     return nullptr;
   }
