@@ -108,7 +108,7 @@ struct MatcherConfig {
   std::size_t reinit = 450;
   Relocalising relocalising{};  ///< A- and O-: how places outside the ranges are found
   /// Closing loops, those of a drive to be localised in too: newest frames that are no places; >= 1
-  std::size_t exclude = 60;
+  std::size_t exclude = 20;
   FullMap full_map = FullMap::refuse;  ///< closing loops: what a full map does
   Standardisation standardisation{};
   /// Frames that `Detector::steps` takes, reading the places once; 1 .. most_frames_at_once. Each

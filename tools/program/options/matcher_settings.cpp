@@ -121,7 +121,7 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.number("vmin", config.vmin, "slowest trajectory, rows a frame [0.8]");
   options.number("vmax", config.vmax, "fastest trajectory, rows a frame [1.2]");
   options.add({"exclude", ValueKind::count,
-               "closing loops, a reference's too: newest frames that are no places [60; 100 by "
+               "closing loops, a reference's too: newest frames that are no places [20; 100 by "
                "uniqueness]",
                [&settings](std::string_view value) { settings.exclude = parse_count(value); }});
   options.add({"full-map", ValueKind::text,

@@ -24,7 +24,7 @@ struct MatcherSettings {
   std::optional<float> min_probability;
   std::optional<std::size_t> patience;  ///< frames
   std::optional<float> max_uniqueness;
-  std::optional<std::size_t> exclude;  ///< frames; 60 by probability, otherwise 100
+  std::optional<std::size_t> exclude;  ///< frames; 20 by probability, otherwise 100
   std::optional<bool> relocalise;      ///< on unless --paper, when nobody says
   bool slice_given = false;
   double relocalise_s = 0.2;  ///< seconds of driving until the whole map was looked at

@@ -21,7 +21,7 @@ Pace parse_pace(std::string_view text) {
 constexpr std::string_view tasks =
     R"(Tasks, and what is taken by default:
   close loops       --source DRIVE                  room for as many places as DRIVE has frames; the
-                                                    newest 60 frames are no places (--exclude)
+                                                    newest 20 frames are no places (--exclude)
   localise          --source DRIVE --reference MAP  a place for each frame of MAP
   a map that lasts  --source DRIVE --map FILE       both: in all that FILE has, and in DRIVE, which
                                                     is added to it while it runs
