@@ -36,6 +36,15 @@ inline std::string encoded(const cv::Mat& picture, const std::string& extension)
   return {bytes.begin(), bytes.end()};
 }
 
+/// A drive of so many pictures, 96 by 64, each of another place.
+inline void write_pictures(const TemporaryFolder& folder, const std::string& name,
+                           std::uint64_t count) {
+  std::filesystem::create_directory(folder.path() / name);
+  for (std::uint64_t n = 0; n < count; ++n) {
+    folder.write(name + "/" + std::to_string(n) + ".png", encoded(textured(96, 64, n + 1), ".png"));
+  }
+}
+
 /// Some bytes changed, taken out or put in.
 inline std::string mutated(std::string file, std::mt19937& random) {
   const auto below = [&](std::size_t n) {

@@ -193,11 +193,7 @@ TEST_F(LastingMaps, ADriveOfManyLapsShrinks) {
 }
 
 TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
-  std::filesystem::create_directory(file("drive"));
-  for (std::uint64_t n = 0; n < 40; ++n) {
-    folder_.write("drive/" + std::to_string(n) + ".png",
-                  test::encoded(test::textured(96, 64, n + 1), ".png"));
-  }
+  test::write_pictures(folder_, "drive", 40);
   expect_done("run --source drive --map with.seqloop --session one --out with.jsonl");
   expect_done("run --source drive --map without.seqloop --thumbnails off --out without.jsonl");
   const auto info = [&](const std::string& name) {
@@ -236,11 +232,7 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
 
 // A session that nobody named is called by its date.
 TEST_F(LastingMaps, APlaceAndItsSessionHaveRoomOverItsPicture) {
-  std::filesystem::create_directory(file("drive"));
-  for (std::uint64_t n = 0; n < 40; ++n) {
-    folder_.write("drive/" + std::to_string(n) + ".png",
-                  test::encoded(test::textured(96, 64, n + 1), ".png"));
-  }
+  test::write_pictures(folder_, "drive", 40);
   expect_done("run --source drive --map m.seqloop --out one.jsonl");
   expect_done("run --source drive --map m.seqloop --read-only --pictures drawn --out two.jsonl");
   const cv::Mat sheet = cv::imread(file("drawn/matches.png"));

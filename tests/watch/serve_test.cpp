@@ -268,11 +268,7 @@ TEST_F(Serve, AnswersAreTheSameWhoeverLooks) {
 
 TEST_F(Serve, ShowsPlacesOfEarlierSessions) {
   if (SEQLOOP_MAPS == 0) GTEST_SKIP() << "this build keeps no maps in files";
-  std::filesystem::create_directory(file("drive"));
-  for (std::uint64_t n = 0; n < 40; ++n) {
-    folder_.write("drive/" + std::to_string(n) + ".png",
-                  test::encoded(test::textured(96, 64, n + 1), ".png"));
-  }
+  test::write_pictures(folder_, "drive", 40);
   ASSERT_EQ(run("run --source drive --map m.seqloop --out first.jsonl").exit_code, 0);
   start("--source drive --map m.seqloop --pace live --fps 20 --budget-total 10000");
   const std::string picture = get("/api/picture?of=place&number=7");

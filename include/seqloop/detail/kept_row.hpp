@@ -11,9 +11,8 @@ template <class Row>
 inline constexpr Row gone = std::numeric_limits<Row>::max();
 
 /// A row went from the map: what is kept of those behind it is counted one lower.
-/// @param forgotten whether it is gone for good, as `PlaceMap::Taken` has it; otherwise the next
-/// one
-///   shows much the same
+/// @param forgotten as `PlaceMap::Taken` has it: the row is gone for good; otherwise the next row
+/// shows much the same
 template <class Row>
 void count_without(std::size_t row, bool forgotten, Row& kept) noexcept {
   if (kept == gone<Row>) return;

@@ -52,10 +52,8 @@ void DescribedDrives::check(Faults& faults) {
   for (const DriveSpec& drive : experiment_.drives) {
     collect_at(drive.where, faults, [&] {
       std::unique_ptr<FrameSource> whole = open_whole(drive);
-      const bool known = program::known_length(*whole).has_value();
-      const auto frames = make_stills(std::move(whole), drive.stills)->frame_count();
-      declared_[drive.name] = frames;
-      if (known) lengths_[drive.name] = frames;
+      const bool sure = program::known_length(*whole).has_value();
+      lengths_[drive.name] = {make_stills(std::move(whole), drive.stills)->frame_count(), sure};
       states[drive.name] = text_of(drive.settings) + drive.source.string() + state_of(drive.source);
     });
   }
@@ -98,22 +96,21 @@ std::vector<Job> DescribedDrives::jobs() const {
       name += " " + setting.name + " " + setting.value;
     // A net takes some ten times as long as what is built in.
     const double a_frame = descriptor.describer.model.model.empty() ? 1.0 : 10.0;
-    jobs.push_back(
-        {name, about(wanted.drive) * a_frame, [this, wanted = wanted] { describe(wanted); }});
+    jobs.push_back({name, static_cast<double>(about(wanted.drive)) * a_frame,
+                    [this, wanted = wanted] { describe(wanted); }});
   }
   return jobs;
 }
 
 std::optional<std::uint64_t> DescribedDrives::length(const std::string& drive) const {
   const auto found = lengths_.find(drive);
-  return found == lengths_.end() ? std::nullopt : found->second;
+  return found != lengths_.end() && found->second.sure ? found->second.frames : std::nullopt;
 }
 
-double DescribedDrives::about(const std::string& drive) const {
+std::uint64_t DescribedDrives::about(const std::string& drive) const {
   constexpr std::uint64_t some = 1'000;
-  const auto found = declared_.find(drive);
-  const auto declared = found == declared_.end() ? std::nullopt : found->second;
-  return static_cast<double>(declared.value_or(some));
+  const auto found = lengths_.find(drive);
+  return found == lengths_.end() ? some : found->second.frames.value_or(some);
 }
 
 std::filesystem::path DescribedDrives::file(const std::string& drive,

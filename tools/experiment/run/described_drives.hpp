@@ -33,7 +33,7 @@ class DescribedDrives {
   [[nodiscard]] std::optional<std::uint64_t> length(const std::string& drive) const;
 
   /// Frames of a drive, more or less, for what work on it costs. After `check`.
-  [[nodiscard]] double about(const std::string& drive) const;
+  [[nodiscard]] std::uint64_t about(const std::string& drive) const;
 
   /// Where the descriptors are, whose name tells what they were made from. After `check`.
   [[nodiscard]] std::filesystem::path file(const std::string& drive, std::size_t descriptor) const;
@@ -50,6 +50,12 @@ class DescribedDrives {
     }
   };
 
+  /// Frames of a drive by its source, and whether that is sure.
+  struct Declared {
+    std::optional<std::uint64_t> frames;
+    bool sure = false;
+  };
+
   /// Before stills are taken of it. Throws SetupError.
   static std::unique_ptr<FrameSource> open_whole(const DriveSpec& spec);
 
@@ -57,8 +63,7 @@ class DescribedDrives {
 
   const Experiment& experiment_;
   std::filesystem::path folder_;
-  std::map<std::string, std::optional<std::uint64_t>> lengths_;
-  std::map<std::string, std::optional<std::uint64_t>> declared_;
+  std::map<std::string, Declared> lengths_;
   std::map<Wanted, std::filesystem::path> files_;
 };
 

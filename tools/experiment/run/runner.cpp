@@ -70,7 +70,9 @@ class Runner {
     drives_.check(faults);
     for (std::size_t pair = 0; pair < experiment_.pairs.size(); ++pair) {
       const PairSpec& spec = experiment_.pairs[pair];
-      check_lengths(pair, lengths_of(spec), faults);
+      check_lengths(pair,
+                    lengths_of(spec, [this](const auto& name) { return drives_.length(name); }),
+                    faults);
     }
   }
 
@@ -132,13 +134,12 @@ class Runner {
     }
   }
 
-  /// As far as the drives know beforehand.
-  [[nodiscard]] PairLengths lengths_of(const PairSpec& pair) const {
+  /// @param length_of a drive, by its name
+  template <class LengthOf>
+  [[nodiscard]] static PairLengths lengths_of(const PairSpec& pair, LengthOf length_of) {
     PairLengths lengths;
-    if (!pair.reference.empty()) lengths.reference = drives_.length(pair.reference);
-    for (const std::string& query : pair.queries) {
-      lengths.queries.push_back(drives_.length(query));
-    }
+    if (!pair.reference.empty()) lengths.reference = length_of(pair.reference);
+    for (const std::string& query : pair.queries) lengths.queries.push_back(length_of(query));
     return lengths;
   }
 
@@ -167,8 +168,8 @@ class Runner {
       const PairSpec& pair = experiment_.pairs[i];
       if (!pair.leave_out) continue;
       jobs.push_back(
-          {"dark and standing frames of " + pair.name, drives_.about(pair.queries.front()),
-           [this, &pair, i] {
+          {"dark and standing frames of " + pair.name,
+           static_cast<double>(drives_.about(pair.queries.front())), [this, &pair, i] {
              kept_frames_[i] = leave_out(*drives_.open(pair.reference),
                                          *drives_.open(pair.queries.front()), *pair.leave_out);
              if (kept_frames_[i]->frames.empty()) {
@@ -198,11 +199,8 @@ class Runner {
         bytes +=
             static_cast<double>(std::filesystem::file_size(drives_.file(query, run.descriptor)));
       }
-      double places = 0.0;
-      for (const std::string& drive :
-           pair.reference.empty() ? pair.queries : std::vector{pair.reference}) {
-        places += drives_.about(drive);
-      }
+      const auto about = [this](const std::string& drive) { return drives_.about(drive); };
+      const auto places = static_cast<double>(*lengths_of(pair, about).map(pair));
       jobs.push_back({name, share * bytes * places, [this, &run] { match(run); }});
     }
     return jobs;

@@ -40,9 +40,8 @@ class MapWriter {
   /// Notes what the detector has made of a frame that it has just taken.
   /// @param counted the frame, as the detector counts; @param index as its source does
   /// @param image its picture, where there is one
-  /// @param readable whether it has a descriptor that is not blank. Until one has, nothing is
-  /// saved:
-  ///   of a full map, places would go for a drive that is discarded
+  /// @param readable whether it has a descriptor that is not blank; until one has, nothing is
+  /// saved, since a full map's places would go for a drive that is discarded
   /// Work: log N and what the frame added, a thumbnail's pixels; every few times D copies.
   /// Allocates: never. No system call, no waiting.
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
