@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "seqloop/detail/portable_math.hpp"
@@ -29,10 +28,16 @@ constexpr double stands_out = 0.97;
 constexpr double where_it_leads = 0.25;
 
 // How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows:
-// a hypothesis that slowed down quickly would linger beside the road. And the chance of a jump from
-// which on rows that go on at another pace than the robot are likelier to be of another place.
+// a hypothesis that slowed down quickly would linger beside the road, and one that slows down
+// though the newest frames raise so much doubt does. What hardly differs from one is no other pace.
 constexpr double last_move = 0.1;
-constexpr double last_move_of_a_drive_that_is_added = 0.02;
+constexpr double last_move_of_a_slow_one = 0.05;
+constexpr double most_doubt_of_a_slower_one = 2.0;
+constexpr double slow_pace = 0.65;
+constexpr double fast_pace = 1.35;
+
+// The chance of a jump from which on rows that go on at another pace than the robot are likelier to
+// be of another place.
 constexpr double jumps_often = 0.01;
 
 constexpr double decay = 0.95;
@@ -150,11 +155,10 @@ void PlaceBelief::prefetch(const SceneView& view) noexcept {
   }
 }
 
-/// Whether a row goes on as its hypothesis has done: a robot may pass an earlier drive's places at
-/// another pace than that drive did.
-bool PlaceBelief::goes_at_its_pace(const PlaceOrder& order, std::size_t row,
-                                   double jumps) const noexcept {
-  return jumps <= jumps_often && (localises_ || row < order.newest_session().first);
+/// Whether a hypothesis goes on at its own pace: a robot may pass places at another one than it, or
+/// an earlier drive, did.
+bool PlaceBelief::goes_at_its_pace(const Hypothesis& at, double jumps) const noexcept {
+  return jumps <= jumps_often && (localises_ || at.pace < slow_pace || at.pace > fast_pace);
 }
 
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
@@ -163,7 +167,7 @@ void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps
                        double least) noexcept {
   std::array<Moves, most> moves;
   for (std::size_t i = 0; i < count_; ++i) {
-    const bool at_its_pace = scene.drives() && goes_at_its_pace(order, rows_[i].row, jumps);
+    const bool at_its_pace = scene.drives() && goes_at_its_pace(rows_[i], jumps);
     if (at_its_pace) {
       moves[i] = moves_at(rows_[i].pace);
     } else {
@@ -279,6 +283,14 @@ void PlaceBelief::hand_over(const PlaceMap& map) noexcept {
   }
 }
 
+/// The pace of a hypothesis that went on by so many rows.
+double PlaceBelief::pace_after(const Hypothesis& at, double by) const noexcept {
+  const double pace = at.pace + last_move * (by - at.pace);
+  if (localises_ || pace >= 1.0) return pace;
+  if (by < at.pace && at.doubt > most_doubt_of_a_slower_one) return at.pace;
+  return at.pace + last_move_of_a_slow_one * (by - at.pace);
+}
+
 /// Makes a hypothesis of what has moved.
 void PlaceBelief::take_on(const PlaceOrder& order, Hypothesis& at, const Moved& moved,
                           bool drives) const noexcept {
@@ -288,8 +300,7 @@ void PlaceBelief::take_on(const PlaceOrder& order, Hypothesis& at, const Moved& 
     at = rows_[moved.parent];
     // Far where it is handed over from another visit of the place.
     const std::size_t by = order.apart(at.row, moved.row);
-    const double part = localises_ ? last_move : last_move_of_a_drive_that_is_added;
-    if (drives && by <= 2) at.pace += part * (static_cast<double>(by) - at.pace);
+    if (drives && by <= 2) at.pace = pace_after(at, static_cast<double>(by));
   }
   at.row = moved.row;
   at.mass = moved.mass;

@@ -95,18 +95,17 @@ class Maker:
         return drives, truth
 
 
+def nothing_near(maker: Maker) -> Near:
+    return {}
+
+
 @dataclasses.dataclass(frozen=True)
 class Drive:
     name: str
     make: Callable[[Maker], tuple[np.ndarray, np.ndarray | None, Truth]]  # query, map, truth
     tolerances: tuple[int, int]  # frames
     needs: tuple[str, ...] = ()  # below the data folder; none: a synthetic street
-    seed: int | None = None  # of a street on which roads meet
-
-    def near(self, maker: Maker) -> Near:
-        """Once it is made."""
-        return {} if self.seed is None else read_near(
-            maker.out / f"street-loop-{self.seed}-near.csv")
+    near: Callable[[Maker], Near] = nothing_near  # once it is made
 
 
 def localise(query: str, reference: str):
@@ -127,6 +126,30 @@ def at_pace(query: str, reference: str, pace: float):
         truth = {i: [int(np.abs(places - i).argmin())] for i in range(len(rows))}
         return rows, known[places], truth
     return make
+
+
+def first_or_second_half_faster(drive: Drive, pace: float) -> Drive:
+    """A drive that closes loops, whose second half goes at so many times the pace of its first."""
+    def frames(count: int) -> np.ndarray:
+        first, second = max(1.0, 1.0 / pace), max(1.0, pace)
+        half = count // 2
+        return np.concatenate([np.arange(0.0, half, first),
+                               np.arange(half, count, second)]).astype(int)
+
+    def make(maker: Maker):
+        rows, _, truth = drive.make(maker)
+        kept = frames(len(rows))
+        return rows[kept], None, {
+            i: [int(np.abs(kept - place).argmin()) for place in truth[int(frame)]]
+            for i, frame in enumerate(kept) if int(frame) in truth}
+
+    def near(maker: Maker) -> Near:
+        kept, by = frames(len(drive.make(maker)[0])), drive.near(maker)
+        return {i: [range(*np.searchsorted(kept, [places.start, places.stop]))
+                    for places in by[int(frame)]]
+                for i, frame in enumerate(kept) if int(frame) in by}
+    return dataclasses.replace(drive, name=f"pace-{drive.name}-{pace}", make=make,
+                               tolerances=(10, 5), near=near)
 
 
 def with_stops(query: str, reference: str, every: int, stop: int, whose: str):
@@ -219,6 +242,10 @@ def street(seed: int, use: str, alone: int | None = None, metres: float = 1.0):
     return make
 
 
+def near_on_street(seed: int):
+    return lambda maker: read_near(maker.out / f"street-loop-{seed}-near.csv")
+
+
 def elsewhere(seed: int, other: int, pieces: int = 0):
     """A street in another season, in the map of another street, on whose own street the robot has
     been carried about before: so many pieces of 40 frames, which are not asked for."""
@@ -266,10 +293,13 @@ def all_drives(seeds: list[int], teleports_by: int = 1) -> list[Drive]:
                for source in (*GARDENS, *NORDLAND)]
     for seed, other in zip(seeds, seeds[1:] + seeds[:1]):
         drives += [Drive(f"street-{seed}", street(seed, "localise"), (10, 3)),
-                   Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3), seed=seed),
+                   Drive(f"street-{seed}-loop", street(seed, "loop"), (10, 3),
+                         near=near_on_street(seed)),
                    Drive(f"street-{seed}-new-summer", street(seed, "localise", 0), (10, 3)),
                    Drive(f"street-{seed}-new-winter", street(seed, "localise", 1), (10, 3))]
         if other != seed:
             drives += [Drive(f"elsewhere-{seed}-in-{other}", elsewhere(seed, other), (10, 3)),
                        Drive(f"carried-off-{other}-to-{seed}", elsewhere(seed, other, 16), (10, 3))]
+    drives += [first_or_second_half_faster(drive, pace) for drive in drives
+               if drive.name.endswith("-loop") for pace in (0.5, 0.67, 1.5, 2.0)]
     return drives

@@ -79,9 +79,10 @@ class NaiveBelief {
     // 6.3, move
     const auto chances = [&](double pace) -> std::vector<double> {
       if (w <= 0.02) return {0.45, 0.40, 0.15};
-      if (!earlier_drives_ || jumps_ > 0.01) return {0.06, 0.88, 0.06};
       // Those of one that stays, or goes by two, get more, the further its pace is from one.
       const double off = std::abs(pace - 1.0);
+      const bool one = jumps_ > 0.01 || (!localises_ && pace >= 0.65 && pace <= 1.35);
+      if (one) return {0.06, 0.88, 0.06};
       const double other = 0.06 + 0.86 * off;
       const double same = 0.88 - 0.82 * off;
       const double least = 0.06 - 0.04 * off;
@@ -104,8 +105,7 @@ class NaiveBelief {
         if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
           largest[row + i] = part;
           here = old;
-          const double last = localises_ ? 0.1 : 0.02;
-          if (w > 0.02) here.pace = old.pace + last * (static_cast<double>(i) - old.pace);
+          if (w > 0.02) here.pace = pace_after(old, static_cast<double>(i));
         }
         here.mass = mass;
       }
@@ -198,6 +198,13 @@ class NaiveBelief {
 
  private:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  /// 6.3, step 1
+  double pace_after(const Row& old, double by) const {
+    const double quick = 0.9 * old.pace + 0.1 * by;
+    if (localises_ || quick >= 1.0) return quick;
+    return old.doubt > 2.0 && by < old.pace ? old.pace : 0.95 * old.pace + 0.05 * by;
+  }
 
   /// What a frame showed of wrong rows.
   struct Showed {
@@ -324,20 +331,27 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
 }
 
 TEST(PlaceBeliefOracle, AtHalfAndTwiceThePace) {
-  // Without the ways on which rows are equal but for rounding: 1 where the drive is added, 1, 4 and
-  // 6 after jumps, where more rows are found.
+  // Without the ways on which rows are equal but for rounding: 2 to 4 of the first eight, more of
+  // them after jumps, where more rows are found.
   for (const auto& [seed, kind, jumps] : {std::tuple{1U, Map::to_localise_in, 0.0},
-                                          {5U, Map::to_localise_in, 0.02},
+                                          {5U, Map::to_localise_in, 0.0},
+                                          {9U, Map::to_localise_in, 0.02},
+                                          {10U, Map::to_localise_in, 0.02},
                                           {5U, Map::to_localise_in, 0.3},
-                                          {4U, Map::of_earlier_drives, 0.0},
-                                          {5U, Map::of_earlier_drives, 0.0}}) {
+                                          {1U, Map::of_earlier_drives, 0.0},
+                                          {5U, Map::of_earlier_drives, 0.0},
+                                          {7U, Map::of_earlier_drives, 0.0},
+                                          {1U, Map::of_the_same_drive, 0.0},
+                                          {4U, Map::of_the_same_drive, 0.0},
+                                          {5U, Map::of_the_same_drive, 0.0}}) {
     SCOPED_TRACE(std::to_string(seed) + ", jumps " + std::to_string(jumps));
     const oracle::Vectors known = test::way(seed, 200, 0.5F, 1, size);
     const oracle::Vectors way = test::way(seed, 200, 0.5F, 2, size);
+    const oracle::Vectors again = test::way(seed, 200, 0.5F, 3, size);
     oracle::Vectors slow;
     oracle::Vectors fast;
     for (std::size_t i = 0; i < 200; ++i) {
-      slow.push_back(way[i / 2]);
+      slow.push_back((i % 2 == 0 ? way : again)[i / 2]);
       if (i % 2 == 0) fast.push_back(way[i]);
     }
     expect_like_the_naive_one(known, slow, kind, jumps);

@@ -96,6 +96,34 @@ TEST(PlaceBelief, KnowsWhereItIsAtAnotherPaceThanTheReference) {
   }
 }
 
+/// Drives that pass a way, another one, and the first again.
+TEST(PlaceBelief, ClosesLoopsAtAnotherPaceThanBefore) {
+  constexpr float noise = 4.0F;
+  for (const auto& [pace, least] : {std::pair{0.5, 0.9}, {0.7, 0.9}, {1.5, 0.9}, {1.8, 0.6}}) {
+    SCOPED_TRACE(pace);
+    std::size_t found = 0;
+    std::size_t all = 0;
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      const oracle::Vectors before = thinned(way(seed, 300, noise, 1), std::max(1.0, 1.0 / pace));
+      const oracle::Vectors elsewhere = way(seed + 50, 100, noise, 1);
+      const oracle::Vectors again = thinned(way(seed, 300, noise, 2), std::max(1.0, pace));
+      oracle::Vectors drive = before;
+      drive.insert(drive.end(), elsewhere.begin(), elsewhere.end());
+      const auto begins = static_cast<double>(drive.size());
+      drive.insert(drive.end(), again.begin(), again.end());
+      for (const Answer& answer : drive_through({}, drive, settings(Use::close_loops)).answers) {
+        if (answer.gate != Gate::match) continue;
+        ++found;
+        EXPECT_NEAR(static_cast<double>(answer.match->place),
+                    pace * (static_cast<double>(answer.frame) - begins), 12.0);
+      }
+      all += again.size();
+    }
+    std::printf("at %.1f times the pace %zu of %zu frames\n", pace, found, all);
+    EXPECT_GE(static_cast<double>(found), least * static_cast<double>(all));
+  }
+}
+
 TEST(PlaceBelief, KnowsWhereItIsOnAKnownWayEdgesIncluded) {
   const oracle::Vectors reference = way(1, 300, 0.5F, 1);
   const oracle::Vectors query = way(1, 300, 0.5F, 2);
@@ -315,7 +343,7 @@ TEST(PlaceBelief, MoreIsAskedWhereTheRobotWasNotFoundLately) {
 
 TEST(PlaceBelief, MoreIsAskedOfADriveThatIsAddedToo) {
   const std::size_t soon = found_again_after(80, Use::close_loops);
-  const std::size_t late = found_again_after(200, Use::close_loops);
+  const std::size_t late = found_again_after(300, Use::close_loops);
   std::printf("found again after %zu and %zu frames of ten drives\n", soon, late);
   EXPECT_GT(late, soon + 20);
 }

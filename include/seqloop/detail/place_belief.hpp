@@ -134,8 +134,8 @@ class PlaceBelief {
 
   [[nodiscard]] bool has_earlier_drives(const SceneView& view) const noexcept;
   static void prefetch(const SceneView& view) noexcept;
-  [[nodiscard]] bool goes_at_its_pace(const PlaceOrder& order, std::size_t row,
-                                      double jumps) const noexcept;
+  [[nodiscard]] bool goes_at_its_pace(const Hypothesis& at, double jumps) const noexcept;
+  [[nodiscard]] double pace_after(const Hypothesis& at, double by) const noexcept;
   void move(const PlaceOrder& order, const Scene& scene, double jumps, double least) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
