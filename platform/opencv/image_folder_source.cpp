@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "opencv/detail/natural_order.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 #include "seqloop/opencv/picture_file_decoder.hpp"
 
 namespace seqloop::opencv {
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 9> extensions{".jpg", ".jpeg", ".png",  ".bmp", ".pgm",
                                                      ".ppm", ".tif",  ".tiff", ".webp"};
+constexpr std::size_t of_jpeg = 2;  // the first of these
 constexpr std::uintmax_t most_file_bytes = std::uintmax_t{1} << 30;
 constexpr std::size_t most_named = 3;  // files that a note names before it says "..."
 
@@ -27,6 +30,14 @@ struct Listing {
   std::vector<std::string> pictures;
   std::vector<std::string> others;
 };
+
+bool is_one_of(const fs::path& path, std::span<const std::string_view> endings) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return std::find(endings.begin(), endings.end(), extension) != endings.end();
+}
 
 /// A dangling link to a picture stays in the drive, as an unreadable frame: the numbers of the
 /// frames behind it do not move.
@@ -75,13 +86,7 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
 
 }  // namespace
 
-bool has_image_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-}
+bool has_image_extension(const std::filesystem::path& path) { return is_one_of(path, extensions); }
 
 class ImageFolderSource::Impl {
  public:
@@ -92,6 +97,11 @@ class ImageFolderSource::Impl {
         frames_per_second_(frames_per_second) {
     if (!std::isfinite(frames_per_second_) || frames_per_second_ <= 0.0)
       throw SetupError(Fault{"frame rate", "is not a positive number"});
+    // Readers that cannot be loaded are no fault of the pictures: said once, not of each of them.
+    const auto is_jpeg = [](const std::string& name) {
+      return is_one_of(name, std::span(extensions).first<of_jpeg>());
+    };
+    if (!std::ranges::all_of(listing_.pictures, is_jpeg)) static_cast<void>(file_codecs());
   }
 
   [[nodiscard]] Grab grab(Frame& frame) noexcept {

@@ -2,6 +2,8 @@
 // The main job through the real binary, on a drive of synthetic pictures and on synthetic
 // descriptors.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
@@ -465,6 +467,24 @@ TEST_F(Run, StreamsToStandardOutputWhenNoFileIsNamed) {
   write_npy("q.npy", oracle::drive(5, 60, 20));
   const auto outcome = expect_done("run --source q.npy --ds 10 --exclude 20 | cat");
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 60);
+}
+
+// Whoever copies the program to a board may forget what reads pictures.
+TEST_F(Run, ACopyWithoutItsModuleSaysSoOnceAndBeforeTheDrive) {
+  std::filesystem::copy_file(SEQLOOP_BINARY, file("copy"));
+  write_npy("q.npy", oracle::drive(5, 60, 20));
+  std::filesystem::create_directory(file("drive"));
+  for (const char* name : {"drive/1.png", "drive/2.png"}) std::ofstream(file(name)) << "no picture";
+  for (const char* arguments : {"--source drive", "--source q.npy --pictures drawn"}) {
+    SCOPED_TRACE(arguments);
+    const auto outcome =
+        run("--version; ./copy run --ds 10 --exclude 20 --out l.jsonl " + std::string(arguments));
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.err.find("seqloop: seqloop-codecs.so: is not there"), 0U) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(exists("l.jsonl"));
+    EXPECT_FALSE(exists("drawn"));
+  }
 }
 
 // A robot that stands adds no place, but places are called by their frames.

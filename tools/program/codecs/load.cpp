@@ -36,7 +36,7 @@ const FileCodecs& load() {
                          why.empty()
                              ? "is not there, so no file of a picture or a video can be read"
                              : "cannot be loaded: " + why,
-                         "install seqloop again"});
+                         "put it beside the program, or install seqloop again"});
 }
 
 }  // namespace
