@@ -79,10 +79,10 @@ class NaiveBelief {
     // 6.3, move
     const auto chances = [&](double pace) -> std::vector<double> {
       if (w <= 0.02) return {0.45, 0.40, 0.15};
+      const bool near_one = pace >= 0.65 && pace <= 1.35;
+      if (jumps_ > 0.01 || (!localises_ && near_one)) return {0.06, 0.88, 0.06};
       // Those of one that stays, or goes by two, get more, the further its pace is from one.
       const double off = std::abs(pace - 1.0);
-      const bool one = jumps_ > 0.01 || (!localises_ && pace >= 0.65 && pace <= 1.35);
-      if (one) return {0.06, 0.88, 0.06};
       const double other = 0.06 + 0.86 * off;
       const double same = 0.88 - 0.82 * off;
       const double least = 0.06 - 0.04 * off;

@@ -475,7 +475,8 @@ TEST_F(Run, ACopyWithoutItsModuleSaysSoOnceAndBeforeTheDrive) {
   write_npy("q.npy", oracle::drive(5, 60, 20));
   std::filesystem::create_directory(file("drive"));
   for (const char* name : {"drive/1.png", "drive/2.png"}) std::ofstream(file(name)) << "no picture";
-  for (const char* arguments : {"--source drive", "--source q.npy --pictures drawn"}) {
+  for (const char* arguments :
+       {"--source drive", "--source q.npy --pictures drawn", "--source drive --pictures drawn"}) {
     SCOPED_TRACE(arguments);
     const auto outcome =
         run("--version; ./copy run --ds 10 --exclude 20 --out l.jsonl " + std::string(arguments));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <utility>
@@ -24,13 +25,17 @@ struct Verb {
   std::function<void(std::vector<std::string>)> words = {};
 };
 
-/// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too.
+/// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too. What
+/// several parts find is told once.
 template <class Part>
 void collect(Faults& faults, Part part) {
   try {
     part();
   } catch (const SetupError& error) {
-    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    for (const Fault& found : error.faults()) {
+      const auto same = [&](const Fault& known) { return to_string(known) == to_string(found); };
+      if (std::ranges::none_of(faults, same)) faults.push_back(found);
+    }
   }
 }
 

@@ -20,6 +20,7 @@
 #include "program/process/outputs.hpp"
 #include "program/run/pictures.hpp"
 #include "seqloop/linux/recording_capture.hpp"
+#include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -78,6 +79,8 @@ void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) 
   }
   if (settings.pictures.empty()) return;
   check_folder(faults, settings.pictures);
+  // What cannot write them is better known now than after the drive.
+  collect(faults, [] { static_cast<void>(opencv::file_codecs()); });
   for (const char* name : {matrix_name, sheet_name}) {
     const std::filesystem::path picture = settings.pictures / name;
     std::error_code error;

@@ -33,7 +33,6 @@
 #include "seqloop/linux/steady_clock.hpp"
 #include "seqloop/linux/touched_memory.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
-#include "seqloop/opencv/file_codecs.hpp"
 #include "seqloop/pipeline.hpp"
 
 namespace seqloop::program {
@@ -109,10 +108,7 @@ void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
   RunSetup setup = set_up(settings, std::move(faults), clock);
-  if (!settings.pictures.empty()) {
-    static_cast<void>(opencv::file_codecs());  // cannot be loaded: known now, not after the drive
-    make_folder(settings.pictures);
-  }
+  if (!settings.pictures.empty()) make_folder(settings.pictures);
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
   RunConditions conditions{settings.source,       settings.reference,
