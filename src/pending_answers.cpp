@@ -21,6 +21,9 @@ constexpr std::size_t none = gone<std::size_t>;
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
+// "Somewhere new" is likely from here on.
+constexpr double likely = 0.5;
+
 // So many frames either side of where two traces meet are in doubt: which of the two a frame there
 // was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
@@ -132,7 +135,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   constexpr double half = 0.5;
   const double least = half * belief.usual_novelty();
   const double usual = belief.usual_gain();
-  span_.take_usual(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
+  ask_belief(map, newest, trace);
+  span_.ask(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
@@ -150,6 +154,25 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   return sketches;
 }
 
+/// Whether the belief of a frame's time was elsewhere than at a row. One in which the likeliest row
+/// is of those that were hardly believed contradicts nothing.
+bool PendingAnswers::contradicts(const PlaceMap& map, const Waiting& then,
+                                 std::size_t row) noexcept {
+  return then.likeliest != none && then.new_place <= likely &&
+         map.order().apart(then.likeliest, row) > own && !map.same_place(then.likeliest, row);
+}
+
+/// Whether the belief of the time was elsewhere than on a trace, or somewhere new.
+void PendingAnswers::ask_belief(const PlaceMap& map, std::uint64_t newest,
+                                std::span<BeliefTraces::Step> trace) noexcept {
+  if (!grows_) return;
+  for (std::size_t back = 0; back < trace.size(); ++back) {
+    const Waiting& then = at(newest - back);
+    if (then.frame != newest - back || then.likeliest == none) continue;
+    trace[back].elsewhere = then.new_place > likely || contradicts(map, then, trace[back].row);
+  }
+}
+
 /// How many of a trace's frames, from the newest on, came since the belief of the time agreed with
 /// it, or did not contradict it, first. All, where it reaches back to the drive's beginning, or to
 /// a gap.
@@ -159,15 +182,10 @@ std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, st
   if (newest - (frames - 1) <= oldest) return frames;
   for (; frames > 1; --frames) {
     const std::uint64_t frame = newest - (frames - 1);
-    const std::size_t row = trace[frames - 1].row;
     const Waiting& then = at(frame);
-    constexpr double likely = 0.5;
     if (then.frame != frame) break;
     if (then.likeliest == none) continue;
-    // A row that is the likeliest of those that were hardly believed contradicts nothing.
-    if (then.new_place > likely) break;
-    const bool agrees = map.order().apart(then.likeliest, row) <= own;
-    if (agrees || map.same_place(then.likeliest, row)) break;
+    if (!contradicts(map, then, trace[frames - 1].row)) break;
   }
   return frames;
 }

@@ -9,17 +9,15 @@
 namespace seqloop {
 namespace {
 
-/// Chances of a frame: a trace begins, or ends.
+/// Chances of a frame: a trace begins, or ends, or a robot that has left it is on it again. The
+/// last is small: the frames in between have to say much against the trace.
 struct Chances {
   double begins;
   double ends;
+  double returns;
 };
-constexpr Chances localising{0.01, 0.001};
-constexpr Chances closing_loops{0.001, 0.0};
-
-/// The chance that a robot which has left the trace is on it again with a frame. It is small: the
-/// frames in between have to say much against the trace.
-constexpr double returns = 1e-5;
+constexpr Chances localising{0.01, 0.001, 1e-5};
+constexpr Chances closing_loops{0.001, 0.001, 1e-10};
 
 /// Where the pictures go on from one to the next, a frame that has changed as much as can be is a
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
@@ -30,8 +28,7 @@ Chances chances_of(double change, double least, const Chances& usual) {
   constexpr double all = 0.6;
   constexpr double goes_on = 0.15;
   const bool cut = change > all && least < goes_on;
-  if (!cut) return usual;
-  return {0.9, usual.ends > 0.0 ? 0.95 : 0.0};
+  return cut ? Chances{0.9, 0.95, usual.returns} : usual;
 }
 
 /// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
@@ -44,14 +41,6 @@ double gain_by_novelty(std::span<const BeliefTraces::Step> agreed, double least)
     novelty += std::max(step.novelty, least);
   }
   return novelty > 0.0 ? gained / novelty : 0.0;
-}
-
-/// How much likelier a frame is where the trace was left than where it has not begun: usual is what
-/// the best of many wrong rows gain, but where the trace leads on is one row, of which half as much
-/// is expected. About e^-(half of it), without the time that exponentials take.
-double likelier_when_gone(double usual, double novelty) {
-  constexpr double half = 0.5;
-  return 1.0 / (1.0 + half * usual * novelty);
 }
 
 /// Whether a sum of what is weighed leaves what can be counted. It is brought back to 1 then only:
@@ -68,7 +57,7 @@ using Pair = std::array<double, 2>;
 struct Backward {
   Pair fresh{1.0, 0.0};
   Pair on;
-  Pair gone{1.0, 1.0};
+  Pair gone;
 
   /// To the frame before. @param likelier, gone_likelier as `Forward` has them, of the frame that
   /// it comes from
@@ -78,7 +67,7 @@ struct Backward {
       const double is_gone = gone_likelier * gone[i];
       fresh[i] = (1.0 - chances.begins) * fresh[i] + chances.begins * is_on;
       on[i] = (1.0 - chances.ends) * is_on + chances.ends * is_gone;
-      gone[i] = (1.0 - returns) * is_gone + returns * is_on;
+      gone[i] = (1.0 - chances.returns) * is_gone + chances.returns * is_on;
       const double sum = fresh[i] + on[i] + gone[i];
       if (!is_far(sum)) continue;
       fresh[i] /= sum;
@@ -95,8 +84,8 @@ TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed,
-                           std::size_t born, double usual, double least) const noexcept {
+void TraceSpan::ask(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
+                    double usual, double least) const noexcept {
   constexpr double nearly = 0.9;
   constexpr double half = 0.5;
   const double since_agreed = localises_ ? 0.0 : 0.7;
@@ -104,8 +93,22 @@ void TraceSpan::take_usual(std::span<BeliefTraces::Step> trace, std::size_t agre
   for (std::size_t back = 0; back < trace.size(); ++back) {
     BeliefTraces::Step& step = trace[back];
     const double share = back < agreed ? since_agreed : back < born ? nearly : half;
-    step.gain -= std::max(usual, share * gained) * std::max(step.novelty, least);
+    step.asked = std::max(usual, share * gained) * std::max(step.novelty, least);
   }
+}
+
+/// How much likelier a frame is where the trace was left than where it has not begun. Usual is what
+/// the best of many wrong rows gain, but where the trace leads on is one row: where a robot
+/// localises half as much is expected of it, about e^-(half of it), without the time that
+/// exponentials take. Where loops are closed more is asked than is usual, so that it counts what a
+/// frame gains at all; and whether the belief of the time was elsewhere, since a street beside the
+/// one that is known may look much like it.
+double TraceSpan::likelier_when_gone(const BeliefTraces::Step& step, double usual) const noexcept {
+  constexpr double half = 0.5;
+  if (localises_) return 1.0 / (1.0 + half * usual * step.novelty);
+  constexpr double by_novelty = 2.0;
+  const double was_elsewhere = step.elsewhere ? by_novelty * step.novelty : 0.0;
+  return exponential(std::min(0.0, was_elsewhere - step.asked));
 }
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
@@ -114,23 +117,24 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   constexpr double forgotten = 10.0;
   constexpr double tiny = 1e-200;  // so that there is something to divide by
   const Chances usual_chances =
-      localises_ ? Chances{localising.begins, localising.ends + jumps} : closing_loops;
+      localises_ ? Chances{localising.begins, localising.ends + jumps, localising.returns}
+                 : closing_loops;
   double fresh = std::max({1.0 - before, std::min(1.0, forgotten * jumps), tiny});
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
-    const double likelier = exponential(step.gain);
+    const double likelier = exponential(step.gain - step.asked);
     const Chances chances = chances_of(step.change, least, usual_chances);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
-      const double comes_back = gone * returns;
+      const double comes_back = gone * chances.returns;
       on += fresh * chances.begins + comes_back - leaves;
       gone += leaves - comes_back;
       fresh *= 1.0 - chances.begins;
     }
     on *= likelier;
-    const double gone_likelier = likelier_when_gone(usual, step.novelty);
+    const double gone_likelier = likelier_when_gone(step, usual);
     gone *= gone_likelier;
     if (const double sum = fresh + on + gone; is_far(sum)) {
       fresh = std::max(fresh / sum, tiny);
@@ -139,8 +143,9 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     }
     forward_[back] = {fresh, on, gone, likelier, gone_likelier};
   }
-  // Where no trace ends, one that was left was left after the newest frame only.
-  Backward after{.on = {1.0, localises_ ? usual_chances.ends : 1.0}};
+  // Where loops are closed, a trace that was left was left after the newest frame only.
+  Backward after = localises_ ? Backward{.on = {1.0, usual_chances.ends}, .gone = {1.0, 1.0}}
+                              : Backward{.on = {1.0, 1.0}, .gone = {0.0, 0.0}};
   for (std::size_t back = 0; back < asked; ++back) {
     const Forward& here = forward_[back];
     Pair share;

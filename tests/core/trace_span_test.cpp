@@ -20,7 +20,6 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
   std::mt19937 random(7);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
   for (int round = 0; round < 100; ++round) {
-    // A trace of a drive that closes loops does not end.
     const bool loops = round >= 50;
     TestArena memory;
     TraceSpan span(memory.arena, loops ? Use::close_loops : Use::localise, 40);
@@ -31,7 +30,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     std::vector<BeliefTraces::Step> trace;
     // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
-      trace.push_back({i, 16.0 * share() - 8.0, share(), share()});
+      trace.push_back({i, 16.0 * share() - 8.0, share(), share(), 0.0, random() % 2 == 0});
     }
     const std::size_t asked = 1 + random() % frames;
     const std::size_t agreed = random() % (frames + 1);
@@ -51,27 +50,33 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       return agreed == 0 ? usual : std::max(usual, part * gained / novelty);
     };
     std::vector<BeliefTraces::Step> less = trace;
-    span.take_usual(less, agreed, born, usual, least);
+    span.ask(less, agreed, born, usual, least);
     const auto found = span.find(less, before, usual, least, jumps, asked);
     ASSERT_EQ(found.size(), asked);
     // How likely a frame is, in a state, after that of the frame before.
     enum State : std::size_t { fresh, on, gone };
     const auto seen = [&](std::size_t i, State state) {
       const auto step = step_of(i);
-      const double elsewhere = i < frames - born     ? at_least(0.5)
-                               : i < frames - agreed ? at_least(0.9)
-                               : loops               ? at_least(0.7)
-                                                     : usual;
-      if (state == on) return std::exp(step.gain - elsewhere * std::max(step.novelty, least));
+      const double usually = i < frames - born     ? at_least(0.5)
+                             : i < frames - agreed ? at_least(0.9)
+                             : loops               ? at_least(0.7)
+                                                   : usual;
+      const double asked_of_it = usually * std::max(step.novelty, least);
+      if (state == on) return std::exp(step.gain - asked_of_it);
+      if (state == fresh) return 1.0;
+      if (loops) {
+        return std::exp(std::min(0.0, (step.elsewhere ? 2.0 * step.novelty : 0.0) - asked_of_it));
+      }
       // Half as much is usual where it was left.
-      return state == gone ? 1.0 / (1.0 + 0.5 * usual * step.novelty) : 1.0;
+      return 1.0 / (1.0 + 0.5 * usual * step.novelty);
     };
     const auto moves = [&](std::size_t i, State from, State to) {
       if (i == 0) return from == to ? 1.0 : 0.0;
       const double begins = is_cut(i) ? 0.9 : loops ? 0.001 : 0.01;
-      const double ends = loops ? 0.0 : is_cut(i) ? 0.95 : 0.001 + jumps;
+      const double ends = is_cut(i) ? 0.95 : 0.001 + jumps;
+      const double returns = loops ? 1e-10 : 1e-5;
       const std::array<std::array<double, 3>, 3> chances{
-          {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, 1e-5, 1.0 - 1e-5}}};
+          {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, returns, 1.0 - returns}}};
       return chances[from][to];
     };
     // How likely all frames are: of all ways, or those that are on the trace at one of them.
@@ -91,8 +96,10 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
         }
         ways = next;
       }
+      // At the newest frame of a drive that closes loops none has been left.
+      if (loops) return Likely{ways[fresh] + ways[on], ways[on]};
       // That it is left with the frame to come, at the latest.
-      const double left = loops ? 1.0 : 0.001 + jumps;
+      const double left = 0.001 + jumps;
       return Likely{ways[fresh] + ways[on] + ways[gone], left * ways[on] + ways[gone]};
     };
     const Likely all = likely(frames);
@@ -118,6 +125,34 @@ TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
     EXPECT_EQ(on[35].still < 0.01, gain < -0.5) << on[35].still;
     EXPECT_GT(on[10].still, 0.99);
     EXPECT_GT(on[60].still, 0.99);
+  }
+}
+
+/// A robot that leaves a road, goes by one beside it, and comes back onto the first one. What the
+/// other one shows has to be very unlike, or the belief of the time somewhere else.
+TEST(TraceSpan, ClosingLoopsItIsLeftBetweenFramesThatAreOnIt) {
+  TestArena memory;
+  TraceSpan span(memory.arena, Use::close_loops, 100);
+  constexpr double usual = 0.1;
+  constexpr double least = 0.25;
+  struct Between {
+    double gain;
+    bool elsewhere;
+    bool is_left;
+  };
+  for (const auto& [gain, elsewhere, is_left] :
+       {Between{0.3, false, false}, Between{0.3, true, false}, Between{-0.4, false, false},
+        Between{-0.4, true, true}, Between{-1.2, false, true}}) {
+    SCOPED_TRACE(std::to_string(gain) + (elsewhere ? ", elsewhere" : ""));
+    std::vector<BeliefTraces::Step> trace(20, {0, 2.0, 0.5, 0.5});
+    trace.resize(70, {0, gain, 0.5, 0.5, 0.0, elsewhere});
+    trace.resize(90, {0, 2.0, 0.5, 0.5});
+    span.ask(trace, 90, 90, usual, least);
+    const auto on = span.find(trace, 1.0, usual, least, 0.0, trace.size());
+    EXPECT_EQ(on[45].still < 0.01, is_left) << on[45].still;
+    EXPECT_EQ(on[45].still > 0.99, !is_left) << on[45].still;
+    EXPECT_GT(on[10].still, 0.99);
+    EXPECT_GT(on[80].still, 0.99);
   }
 }
 
@@ -152,9 +187,9 @@ TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
     constexpr double usual = 0.1;
     constexpr double least = 0.25;
     std::vector<BeliefTraces::Step> all = trace;
-    span.take_usual(all, 30, 30, usual, least);
+    span.ask(all, 30, 30, usual, least);
     EXPECT_GT(span.find(all, 0.0, usual, least, 0.0, 30)[29].still, 0.5);
-    span.take_usual(trace, 20, 30, usual, least);
+    span.ask(trace, 20, 30, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[25].still > 0.5, gain > 0.5);
     EXPECT_GT(span.find(trace, 0.0, usual, least, 0.0, 30)[15].still, 0.99);
   }
@@ -169,7 +204,7 @@ TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
     trace.resize(30, {0, gain, 0.5, 0.5});
     constexpr double usual = 0.1;
     constexpr double least = 0.25;
-    span.take_usual(trace, 20, 20, usual, least);
+    span.ask(trace, 20, 20, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[29].still > 0.5, gain > 0.0);
   }
 }
@@ -185,7 +220,7 @@ TEST(TraceSpan, LastsWhereAFrameGainsLessThanIsUsualButMoreThanOneRowDoes) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, gain, 0.5, 0.5});
     trace.resize(50, {0, 1.0, 0.5, 0.5});
-    span.take_usual(trace, 50, 50, usual, least);
+    span.ask(trace, 50, 50, usual, least);
     EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 50)[0].still > 0.5, gain > 0.0);
   }
 }
@@ -201,11 +236,11 @@ TEST(TraceSpan, ClosingLoopsFirstFramesHaveToGainMoreThanHalfAsMuch) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> begins(30, {0, 1.0, 0.5, 0.5});
     begins.resize(50, {0, gain, 0.5, 0.5});
-    span.take_usual(begins, 50, 50, usual, least);
+    span.ask(begins, 50, 50, usual, least);
     EXPECT_EQ(span.find(begins, 0.0, usual, least, 0.0, 50)[45].still > 0.5, gain > 0.5);
     std::vector<BeliefTraces::Step> ends(20, {0, gain, 0.5, 0.5});
     ends.resize(50, {0, 1.0, 0.5, 0.5});
-    span.take_usual(ends, 50, 50, usual, least);
+    span.ask(ends, 50, 50, usual, least);
     EXPECT_GT(span.find(ends, 0.0, usual, least, 0.0, 50)[5].still, 0.99);
   }
 }

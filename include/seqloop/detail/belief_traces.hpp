@@ -27,9 +27,11 @@ class BeliefTraces {
   /// A frame on the way to a row.
   struct Step {
     std::size_t row;
-    double gain;     ///< ln of how much likelier the frame is there than somewhere new
-    double novelty;  ///< of the frame, 0 .. 1
-    double change;   ///< of the frame, as `Scene` has it
+    double gain;         ///< ln of how much likelier the frame is there than somewhere new
+    double novelty;      ///< of the frame, 0 .. 1
+    double change;       ///< of the frame, as `Scene` has it
+    double asked = 0.0;  ///< gain from which on the frame rather lies on the trace than before it
+    bool elsewhere = false;  ///< whether the belief of the time was
   };
 
   /// Begins the next frame; `set` fills it in.

@@ -60,7 +60,8 @@ class PendingAnswers {
   /// @param oldest frame that belongs together with it
   /// @return pairs of sketches compared
   /// Work: a pass over the frames that wait, as many exponentials as patience has frames, twice
-  /// where the robot has been carried away, and that of `FirstFrames::follow`. Allocates: never.
+  /// where loops are closed or the robot has been carried away, and that of `FirstFrames::follow`.
+  /// Allocates: never.
   std::size_t believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
                       std::uint64_t oldest) noexcept;
 
@@ -165,6 +166,10 @@ class PendingAnswers {
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
+  [[nodiscard]] static bool contradicts(const PlaceMap& map, const Waiting& then,
+                                        std::size_t row) noexcept;
+  void ask_belief(const PlaceMap& map, std::uint64_t newest,
+                  std::span<BeliefTraces::Step> trace) noexcept;
   [[nodiscard]] std::size_t agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
                                    std::span<const BeliefTraces::Step> trace) noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;

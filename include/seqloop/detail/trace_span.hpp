@@ -12,9 +12,9 @@ namespace seqloop {
 
 /// On which frames of a trace the robot was on it: it may have come onto the map later than the
 /// trace says, have left it already, or have been elsewhere in between. A smoother, forward and
-/// backward, over three states. In a drive that closes loops no trace ends here: the last frames
-/// of any revisit look like what wrong rows see, so that they tell no end. The doubt does
-/// (`PlaceBelief::remember`). Source: src/README.md, section 6.6.
+/// backward, over three states. In a drive that closes loops the newest frame is on the trace, or
+/// before it: the last frames of any revisit look like what wrong rows see, so that they tell no
+/// end. The doubt does (`PlaceBelief::remember`). Source: src/README.md, section 6.6.
 class TraceSpan {
  public:
   /// @param use  whether the drive closes loops
@@ -28,7 +28,7 @@ class TraceSpan {
     [[nodiscard]] double where(bool was_left) const noexcept { return was_left ? left : still; }
   };
 
-  /// Takes what frames gain elsewhere from what they gain on a trace.
+  /// Says what each frame has to gain.
   /// @param trace  the newest frame first
   /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace,
   ///               0 to all. In a drive that closes loops each has to gain .7 of what they gain
@@ -40,18 +40,19 @@ class TraceSpan {
   ///               the map: such a frame has to gain half as much
   /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param least  novelty that a frame has for this at least
-  void take_usual(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
-                  double usual, double least) const noexcept;
+  void ask(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born, double usual,
+           double least) const noexcept;
 
-  /// @param trace  the newest frame first; at most `most`. Its gains are less what is usual
+  /// @param trace  the newest frame first; at most `most`
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
-  /// @param usual  as `take_usual` has it
-  /// @param least  as `take_usual` has it
+  /// @param usual  as `ask` has it
+  /// @param least  as `ask` has it
   /// @param jumps  the chance that the robot is carried away with a frame, beyond what is usual, 0
   ///               .. 0.5. The higher it is, the less does `before` speak for the oldest frame
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
   /// @return [asked] frame by frame as the trace; until the next call
-  /// Work: as many exponentials as the trace has frames. Allocates: never.
+  /// Work: as many exponentials as the trace has frames, twice where loops are closed. Allocates:
+  /// never.
   std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
                            double least, double jumps, std::size_t asked) noexcept;
 
@@ -65,7 +66,10 @@ class TraceSpan {
     double gone_likelier;  // the frame, after the trace than before it
   };
 
-  bool localises_;              // if not, no trace ends
+  [[nodiscard]] double likelier_when_gone(const BeliefTraces::Step& step,
+                                          double usual) const noexcept;
+
+  bool localises_;
   std::span<Forward> forward_;  // [most]
   std::span<On> on_;            // [most]
 };
