@@ -31,7 +31,7 @@ class BeliefTraces {
     double novelty;      ///< of the frame, 0 .. 1
     double change;       ///< of the frame, as `Scene` has it
     double asked = 0.0;  ///< gain from which on the frame rather lies on the trace than before it
-    bool elsewhere = false;  ///< whether the belief of the time was
+    bool elsewhere = false;  ///< whether the belief of its time was elsewhere
   };
 
   /// Begins the next frame; `set` fills it in.
