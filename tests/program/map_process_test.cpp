@@ -321,7 +321,8 @@ TEST_F(MapProcess, AStallThatOutlastsTheDriveEndsWithAWord) {
   const std::string told = test::read_all(file("err"));
   EXPECT_NE(told.find("the run goes on"), std::string::npos) << told;
   EXPECT_NE(told.find("what was missing is saved"), std::string::npos) << told;
-  EXPECT_EQ(sessions("m.seqloop").at("one").frames, frames);
+  // A machine that is busy with other things may not keep up with the drive.
+  EXPECT_EQ(sessions("m.seqloop").at("one").frames, said("lines").taken.size());
 }
 #endif
 
