@@ -321,8 +321,12 @@ TEST_F(MapProcess, AStallThatOutlastsTheDriveEndsWithAWord) {
   const std::string told = test::read_all(file("err"));
   EXPECT_NE(told.find("the run goes on"), std::string::npos) << told;
   EXPECT_NE(told.find("what was missing is saved"), std::string::npos) << told;
-  // A machine that is busy with other things may not keep up with the drive.
-  EXPECT_EQ(sessions("m.seqloop").at("one").frames, said("lines").taken.size());
+  // All that was taken: a machine that is busy with other things may not keep up with the drive.
+  const auto places = sessions("m.seqloop").at("one").places;
+  EXPECT_GT(places.size(), frames / 2);
+  for (const std::uint64_t frame : said("lines").taken) {
+    EXPECT_TRUE(places.contains(frame)) << frame;
+  }
 }
 #endif
 
