@@ -154,12 +154,12 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   return sketches;
 }
 
-/// Whether the belief of a frame's time was elsewhere than at a row. One in which the likeliest row
-/// is of those that were hardly believed contradicts nothing.
+/// Whether the belief of a frame's time, which had a likeliest row, was elsewhere than at another.
+/// One whose likeliest row was hardly believed contradicts nothing.
 bool PendingAnswers::contradicts(const PlaceMap& map, const Waiting& then,
                                  std::size_t row) noexcept {
-  return then.likeliest != none && then.new_place <= likely &&
-         map.order().apart(then.likeliest, row) > own && !map.same_place(then.likeliest, row);
+  return then.new_place <= likely && map.order().apart(then.likeliest, row) > own &&
+         !map.same_place(then.likeliest, row);
 }
 
 /// Whether the belief of the time was elsewhere than on a trace, or somewhere new.

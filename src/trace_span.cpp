@@ -116,9 +116,8 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
                                                double jumps, std::size_t asked) noexcept {
   constexpr double forgotten = 10.0;
   constexpr double tiny = 1e-200;  // so that there is something to divide by
-  const Chances usual_chances =
-      localises_ ? Chances{localising.begins, localising.ends + jumps, localising.returns}
-                 : closing_loops;
+  Chances usual_chances = localises_ ? localising : closing_loops;
+  usual_chances.ends += jumps;
   double fresh = std::max({1.0 - before, std::min(1.0, forgotten * jumps), tiny});
   double on = 1.0;
   double gone = 0.0;
