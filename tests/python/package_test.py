@@ -70,6 +70,14 @@ class Imports(unittest.TestCase):
         for library in libraries:
             self.assertRegex(library, r"^(libfmt|libsqlite3|libz|libstdc\+\+|libm|libgcc_s|libc|ld-linux.*)\.so")
 
+    def test_a_numpy_that_it_cannot_read_is_refused(self) -> None:
+        code = "import numpy; numpy.__version__ = '2.1.0'; import seqloop"
+        done = subprocess.run([sys.executable, "-B", "-c", code], check=False, capture_output=True, text=True)
+        knows = tuple(map(int, os.environ["SEQLOOP_PYBIND11_VERSION"].split(".")[:2])) >= (2, 12)
+        self.assertEqual(done.returncode == 0, knows, done.stderr)
+        if not knows:
+            self.assertRegex(done.stderr, "ImportError: this is NumPy 2.1.0, .*: use NumPy 1, or build")
+
     def test_help_is_enough_to_begin(self) -> None:
         shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop)"], check=True,
                                capture_output=True, text=True).stdout
@@ -308,6 +316,26 @@ class Lives(unittest.TestCase):
             seqloop.PlaceMap(-1, 0, ds=-1)
         self.assertEqual(len(raised.exception.faults), 3)
         self.assertEqual((len(empty), empty.capacity, empty.descriptor_size), (200, 200, 48))
+
+    def test_daemon_threads_end_with_the_program(self) -> None:
+        code = ("import threading, time, numpy, seqloop\n"
+                "begun = threading.Barrier(4)\n"
+                "def drive():\n"
+                "    detector = seqloop.Detector(seqloop.PlaceMap(3000, 48, True))\n"
+                "    rows = numpy.eye(48, dtype=numpy.float32)\n"
+                "    begun.wait()\n"
+                "    while True: [detector.step(row) for row in rows]\n"
+                "def match():\n"
+                "    rows = numpy.tile(numpy.eye(48, dtype=numpy.float32), (20, 1))\n"
+                "    begun.wait()\n"
+                "    while True: seqloop.match(None, rows)\n"
+                "for work in (drive, drive, match): threading.Thread(target=work, daemon=True).start()\n"
+                "begun.wait()\n"
+                "time.sleep(.2)\n"
+                "print('over')\n")
+        done = subprocess.run([sys.executable, "-B", "-c", code], check=False, capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "over\n", ""))
 
     def test_threads_share_a_map_and_wait_for_each_other_at_a_detector(self) -> None:
         reference, query = drives()

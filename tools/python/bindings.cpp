@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "python/interpreter_lock.hpp"
+
 namespace seqloop::python {
 namespace {
 
@@ -190,7 +192,7 @@ std::span<const float> descriptor(const Array& array, std::size_t size) {
 }
 
 void look_for_interruption() {
-  const py::gil_scoped_acquire lock;
+  const Locked lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "python/bindings.hpp"
+#include "python/interpreter_lock.hpp"
 #include "python/map.hpp"
 #include "python/map_files.hpp"
 #include "python/recordings.hpp"
@@ -24,8 +25,6 @@ namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
-
-using Unlocked = py::gil_scoped_release;
 
 // Of a map in a file, where no time is given; as `seqloop match` has it.
 constexpr double frames_a_second = 10.0;
@@ -83,20 +82,24 @@ class Stepper {
   }
 
   std::vector<Answer> finish() {
-    const Unlocked unlocked;
-    const std::scoped_lock lock(guard());
-    program::LastingMap* const file = kept();
-    if (file == nullptr || !rest_) {
-      const std::span<const Answer> answers = detector_->finish();
-      rest_.emplace(answers.begin(), answers.end());
+    std::vector<Answer> rest;
+    std::optional<std::string> unsaved;
+    {
+      const Unlocked unlocked;
+      const std::scoped_lock lock(guard());
+      program::LastingMap* const file = kept();
+      if (file == nullptr || !rest_) {
+        const std::span<const Answer> answers = detector_->finish();
+        rest_.emplace(answers.begin(), answers.end());
+      }
+      rest = *rest_;
+      if (file != nullptr) unsaved = file->finish(*detector_, rest);
     }
-    const auto unsaved = file != nullptr ? file->finish(*detector_, *rest_) : std::nullopt;
     if (unsaved) {
-      const py::gil_scoped_acquire locked;
       set_os_error("not all of the drive is saved: " + *unsaved);
       throw py::error_already_set();
     }
-    return *rest_;
+    return rest;
   }
 
   /// @return [places]; NaN where nothing was computed
@@ -157,6 +160,19 @@ class Stepper {
   std::optional<std::vector<Answer>> rest_;  // once the drive is over
 };
 
+/// NumPy 2 has another layout of types than NumPy 1: with a pybind11 that does not know it, arrays
+/// would have wrong strides.
+void check_numpy() {
+#if PYBIND11_VERSION_HEX < 0x020C0000
+  const auto version = py::module_::import("numpy").attr("__version__").cast<std::string>();
+  if (version.starts_with("1.")) return;
+  throw py::import_error(fmt::format(
+      "this is NumPy {}, and seqloop was built with a pybind11 that knows NumPy 1 only: use NumPy "
+      "1, or build seqloop with pybind11 2.12 or newer",
+      version));
+#endif
+}
+
 }  // namespace
 }  // namespace seqloop::python
 
@@ -168,6 +184,7 @@ PYBIND11_MODULE(_core, module) {
   py::options options;
   options.disable_function_signatures();
   module.doc() = "Matching, without pictures. Use it through the package seqloop.";
+  seqloop::python::check_numpy();
   const auto error = py::module_::import("seqloop._errors").attr("SetupError");
   seqloop::python::translate_faults(error);
   seqloop::python::add_reports(module);

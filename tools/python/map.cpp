@@ -11,6 +11,7 @@
 #include "program/options/flag_names.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/options/verb.hpp"
+#include "python/interpreter_lock.hpp"
 #include "python/recordings.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -19,8 +20,6 @@ namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
-
-using Unlocked = py::gil_scoped_release;
 
 // The interpreter's lock may be others' for milliseconds.
 constexpr std::uint64_t frames_between_looks = 64;

@@ -10,14 +10,13 @@
 
 #include "program/map/merge.hpp"
 #include "python/bindings.hpp"
+#include "python/interpreter_lock.hpp"
 #include "seqloop/sqlite/map_file.hpp"
 
 namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
-
-using Unlocked = py::gil_scoped_release;
 
 py::dict info(const std::filesystem::path& file) {
   const sqlite::MapFile map = sqlite::MapFile::read_only(file);

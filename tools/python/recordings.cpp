@@ -14,13 +14,12 @@
 #include "program/options/matcher_settings.hpp"
 #include "program/options/truth_settings.hpp"
 #include "program/options/verb.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
-
-using Unlocked = py::gil_scoped_release;
 
 /// The columns of the program's match list.
 py::dict columns_of(const program::MatchedDrive& matched) {

@@ -12,13 +12,12 @@
 #include "program/drives/drives.hpp"
 #include "program/options/verb.hpp"
 #include "python/bindings.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
-
-using Unlocked = py::gil_scoped_release;
 
 /// A picture, where it lies.
 Image image(const Array& picture) {
