@@ -168,7 +168,7 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
 /// Of a frame that shows what the newest step does.
 FrameReport Detector::report_again() noexcept {
   const std::size_t before = pending_.answers().size();
-  pending_.answer(belief_, *map_, steps_, steps_.frames() - 1, window_began_);
+  pending_.answer(*map_, steps_, steps_.frames() - 1, window_began_);
   FrameReport report = last_;
   report.work = {};
   report.full_search = false;
@@ -287,7 +287,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   if (readable) {
     report.work.sketches += pending_.believe(belief_, *map_, report.newest, window_began_);
   }
-  pending_.answer(belief_, *map_, steps_, steps_.frame_of(report.newest), window_began_);
+  pending_.answer(*map_, steps_, steps_.frame_of(report.newest), window_began_);
   report.answers = pending_.answers().subspan(before);
   say_last(report, report.newest, readable);
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
@@ -315,7 +315,7 @@ std::span<const Answer> Detector::finish() noexcept {
   told_count_ = 0;
   const std::uint64_t end = queries_.frames();
   if (end > 0 && config_.decision == Decision::probability)
-    pending_.answer(belief_, *map_, steps_, steps_.frames() - 1, end);
+    pending_.answer(*map_, steps_, steps_.frames() - 1, end);
   FrameReport report;
   report.answers = pending_.answers();
   if (!told_.empty() && end > 0) tell(report, pending_.answers());

@@ -21,9 +21,6 @@ constexpr std::size_t none = gone<std::size_t>;
 // A line is a trace's own if it lies so near it.
 constexpr std::size_t own = 6;
 
-// "Somewhere new" is likely from here on.
-constexpr double likely = 0.5;
-
 // So many frames either side of where two traces meet are in doubt: which of the two a frame there
 // was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
@@ -63,8 +60,8 @@ void PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   forget_evidence();
-  at(frame) = {frame,      true,       readable, false, false, false, 0, 0.0, 0.0,
-               {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0.0,   0, {}};
+  at(frame) = {frame,      true,       readable, false, false, 0, 0.0, 0.0,
+               {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0, {}};
   end_ = frame + 1;
 }
 
@@ -115,7 +112,6 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const std::size_t born = belief.trace(likeliest->index, trace_);
   std::size_t sketches = 0;
   const auto trace = trace_.first(belief.follow_back(map, trace_, born, newest, sketches));
-  at(newest).novelty = trace.front().novelty;
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
   const double best = belief.remember(log_odds(*evidence_));
@@ -131,69 +127,45 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
                      map.order().apart(before.row, trace.back().row) <= own;
   const auto waiting = static_cast<std::size_t>(newest + 1 - first_);
   const std::size_t frames = std::min(trace.size(), waiting);
-  // A frame that stands still tells half as much as one that does not.
-  constexpr double half = 0.5;
-  const double least = half * belief.usual_novelty();
   const double usual = belief.usual_gain();
+  const double novelty = belief.usual_novelty();
   ask_belief(map, newest, trace);
-  span_.ask(trace, agreed(map, newest, oldest, trace.first(born)), born, usual, least);
+  span_.ask(trace, usual);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
-    std::ranges::copy(span_.find(trace, was_on, usual, least, jumps, frames), carried_.begin());
+    std::ranges::copy(span_.find(trace, was_on, usual, novelty, jumps, frames), carried_.begin());
     carried = carried_.first(frames);
   }
-  const auto on = span_.find(trace, was_on, usual, least, 0.0, frames);
+  const auto on = span_.find(trace, was_on, usual, novelty, 0.0, frames);
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (!frame.waits || frame.frame != newest - back) continue;
     look_back(map.order(), frame,
               {trace[back].row, right, same_place, on[back],
-               carried.empty() ? on[back] : carried[back], back, back >= born});
+               carried.empty() ? on[back] : carried[back], back});
   }
   return sketches;
-}
-
-/// Whether the belief of a frame's time, which had a likeliest row, was elsewhere than at another.
-/// One whose likeliest row was hardly believed contradicts nothing.
-bool PendingAnswers::contradicts(const PlaceMap& map, const Waiting& then,
-                                 std::size_t row) noexcept {
-  return then.new_place <= likely && map.order().apart(then.likeliest, row) > own &&
-         !map.same_place(then.likeliest, row);
 }
 
 /// Whether the belief of the time was elsewhere than on a trace, or somewhere new.
 void PendingAnswers::ask_belief(const PlaceMap& map, std::uint64_t newest,
                                 std::span<BeliefTraces::Step> trace) noexcept {
   if (!grows_) return;
+  constexpr double half = 0.5;
   for (std::size_t back = 0; back < trace.size(); ++back) {
     const Waiting& then = at(newest - back);
     if (then.frame != newest - back || then.likeliest == none) continue;
-    trace[back].elsewhere = then.new_place > likely || contradicts(map, then, trace[back].row);
+    trace[back].elsewhere =
+        then.new_place > half || (map.order().apart(then.likeliest, trace[back].row) > own &&
+                                  !map.same_place(then.likeliest, trace[back].row));
   }
-}
-
-/// How many of a trace's frames, from the newest on, came since the belief of the time agreed with
-/// it, or did not contradict it, first. All, where it reaches back to the drive's beginning, or to
-/// a gap.
-std::size_t PendingAnswers::agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
-                                   std::span<const BeliefTraces::Step> trace) noexcept {
-  std::size_t frames = trace.size();
-  if (newest - (frames - 1) <= oldest) return frames;
-  for (; frames > 1; --frames) {
-    const std::uint64_t frame = newest - (frames - 1);
-    const Waiting& then = at(frame);
-    if (then.frame != frame) break;
-    if (then.likeliest == none) continue;
-    if (!contradicts(map, then, trace[frames - 1].row)) break;
-  }
-  return frames;
 }
 
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
                                const LookedBack& back) noexcept {
-  const auto& [row, right, same_place, on, carried, lag, before_birth] = back;
+  const auto& [row, right, same_place, on, carried, lag] = back;
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
@@ -211,7 +183,6 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
   waiting.carried = carried;
   waiting.lag = lag;
   waiting.row = row;
-  waiting.before_birth = before_birth;
   waiting.left = false;
   waiting.believed = true;
 }
@@ -257,14 +228,14 @@ void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
   }
 }
 
-void PendingAnswers::answer(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
-                            std::uint64_t newest, std::uint64_t oldest) noexcept {
+void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_t newest,
+                            std::uint64_t oldest) noexcept {
   for (std::uint64_t frame = first_; frame < end_; ++frame) {
     Waiting& waiting = at(frame);
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - steps.frame_of(frame) >= patience_;
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
-    give(belief, map, steps, waiting);
+    give(map, steps, waiting);
     if (answers_[given_ - 1].gate != Gate::match) continue;
     if (frame >= oldest) last_found_ = std::max(frame, last_found_.value_or(0));
     if (grows_) continue;
@@ -307,11 +278,11 @@ bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waitin
 }
 
 /// Whether a whole window after a frame went on along the trace, and the frame's own window goes
-/// along it better than elsewhere: much better, if the trace begins in that window.
+/// along it better than elsewhere: the more so, if the trace begins in that window.
 bool PendingAnswers::is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept {
-  constexpr double much = 0.1;
+  constexpr double more = 0.04;
   if (waiting.lag <= 2 * after_centre_) return false;
-  const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : much;
+  const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : more;
   return margin(map, slot_of(waiting.frame), waiting.row) >= least;
 }
 
@@ -330,8 +301,7 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   return std::clamp(if_carried, most_in_doubt, is_there);
 }
 
-void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
-                          Waiting& waiting) noexcept {
+void PendingAnswers::give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting) noexcept {
   waiting.waits = false;
   Answer& answer = answers_[given_++];
   answer = {waiting.frame, Gate::frame_error, 0.0F, std::nullopt};
@@ -339,7 +309,7 @@ void PendingAnswers::give(const PlaceBelief& belief, PlaceMap& map, const FrameS
   answer.gate = Gate::new_place;
   if (!waiting.believed) return;
   answer.probability = static_cast<float>(calibrated(told(map, waiting)));
-  answer.match = match(belief, map, waiting.frame);
+  answer.match = match(map, waiting.frame);
   const bool sure = accepts(answer.probability);
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
@@ -380,28 +350,11 @@ bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame)
   const Waiting& last = at(frame + after_centre_);
   // From 0 to 2 rows a frame, as the belief moves.
   return first.frame == frame - before && last.frame == frame + after_centre_ && first.believed &&
-         !first.before_birth && last.believed &&
-         std::min(probability(first), probability(last)) > half && first.row <= last.row &&
-         order.apart(first.row, last.row) <= 2 * (before + after_centre_);
+         last.believed && std::min(probability(first), probability(last)) > half &&
+         first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
 }
 
-/// Whether little was new in the window of a frame, for this drive.
-bool PendingAnswers::hardly_changes(const PlaceBelief& belief, std::uint64_t frame) noexcept {
-  const std::uint64_t first = frame - std::min<std::uint64_t>(frame, trajectories_->centre());
-  const std::uint64_t last = std::min(frame + after_centre_ + 1, end_);
-  double sum = 0.0;
-  double frames = 0.0;
-  for (std::uint64_t other = first; other < last; ++other) {
-    if (at(other).frame != other) continue;
-    sum += at(other).novelty;
-    frames += 1.0;
-  }
-  constexpr double little = 0.3;
-  return sum < little * belief.usual_novelty() * frames;
-}
-
-Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
-                            std::uint64_t frame) noexcept {
+Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
   const PlaceOrder& order = map.order();
   // A row that is `by` rows from another, or as far that way as its session goes.
   const auto number = [&](std::size_t row, std::int64_t by) {
@@ -412,10 +365,8 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
     return order.number(static_cast<std::size_t>(there));
   };
   // The line through the frame itself, or the nearest one that reaches it; one whose window lies on
-  // the trace from end to end, if there is any. Otherwise, and where hardly anything changes, rows
-  // side by side have lines that are as good as each other: the trace knows the row better. A line
+  // the trace from end to end, if there is any. Otherwise the trace knows the row better. A line
   // that does worse than one elsewhere comes after those that do not.
-  const bool stands = hardly_changes(belief, frame);
   enum class Line { best, whole, any };
   for (const Line wanted : {Line::best, Line::whole, Line::any}) {
     const bool whole = wanted != Line::any;
@@ -428,11 +379,9 @@ Match PendingAnswers::match(const PlaceBelief& belief, const PlaceMap& map,
         if (!line || (whole && !lies_on_trace(order, other))) continue;
         if (wanted == Line::best && margin(map, slot_of(other), line->row) < 0.0) continue;
         const auto offsets = trajectories_->offsets(line->line);
-        const bool by_line = whole && !stands;
-        const std::size_t from = by_line ? line->row : at(frame).row;
+        const std::size_t from = whole ? line->row : at(frame).row;
         const std::int64_t there =
-            by_line ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)]
-                    : 0;
+            whole ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)] : 0;
         // Line and trace err each in its own way: half way between them errs least. Another visit's
         // rows are no neighbours of the trace's.
         std::int64_t aside = 0;

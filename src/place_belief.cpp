@@ -460,14 +460,13 @@ double PlaceBelief::usual_gain() const noexcept {
 }
 
 double PlaceBelief::remember(double odds) noexcept {
-  constexpr double fading = 0.1;
   constexpr double too_much = 3.0;
   // Other visits of the place have had it from this row.
   if (!localises_ && likeliest_->evidence.doubt > too_much) {
     for (Hypothesis& at : rows_.first(count_)) at.past = std::min(at.past, odds);
   }
   double& past = rows_[likeliest_->index].past;
-  past = std::max(past - fading * novelty_, odds);
+  past = std::max(past, odds);
   return past;
 }
 

@@ -22,23 +22,22 @@ constexpr Chances closing_loops{0.001, 0.001, 1e-10};
 /// Where the pictures go on from one to the next, a frame that has changed as much as can be is a
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
 /// none.
-/// @param least half of what is new of this drive's frames
+/// @param novelty what is usually new of this drive's frames
 /// @param usual of frames that are no cuts
-Chances chances_of(double change, double least, const Chances& usual) {
+Chances chances_of(double change, double novelty, const Chances& usual) {
   constexpr double all = 0.6;
-  constexpr double goes_on = 0.15;
-  const bool cut = change > all && least < goes_on;
+  constexpr double goes_on = 0.3;
+  const bool cut = change > all && novelty < goes_on;
   return cut ? Chances{0.9, 0.95, usual.returns} : usual;
 }
 
-/// What the frames gained by novelty on which the belief of the time agreed with the trace; 0 where
-/// there are none.
-double gain_by_novelty(std::span<const BeliefTraces::Step> agreed, double least) {
+/// What frames gained by novelty; 0 where there was none.
+double gain_by_novelty(std::span<const BeliefTraces::Step> trace) {
   double gained = 0.0;
   double novelty = 0.0;
-  for (const BeliefTraces::Step& step : agreed) {
+  for (const BeliefTraces::Step& step : trace) {
     gained += step.gain;
-    novelty += std::max(step.novelty, least);
+    novelty += step.novelty;
   }
   return novelty > 0.0 ? gained / novelty : 0.0;
 }
@@ -84,17 +83,10 @@ TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::ask(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born,
-                    double usual, double least) const noexcept {
-  constexpr double nearly = 0.9;
-  constexpr double half = 0.5;
-  const double since_agreed = localises_ ? 0.0 : 0.7;
-  const double gained = gain_by_novelty(trace.first(agreed), least);
-  for (std::size_t back = 0; back < trace.size(); ++back) {
-    BeliefTraces::Step& step = trace[back];
-    const double share = back < agreed ? since_agreed : back < born ? nearly : half;
-    step.asked = std::max(usual, share * gained) * std::max(step.novelty, least);
-  }
+void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double usual) const noexcept {
+  constexpr double share = 0.7;
+  const double by_novelty = localises_ ? usual : std::max(usual, share * gain_by_novelty(trace));
+  for (BeliefTraces::Step& step : trace) step.asked = by_novelty * step.novelty;
 }
 
 /// How much likelier a frame is where the trace was left than where it has not begun. Usual is what
@@ -112,7 +104,7 @@ double TraceSpan::likelier_when_gone(const BeliefTraces::Step& step, double usua
 }
 
 std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Step> trace,
-                                               double before, double usual, double least,
+                                               double before, double usual, double novelty,
                                                double jumps, std::size_t asked) noexcept {
   constexpr double forgotten = 10.0;
   constexpr double tiny = 1e-200;  // so that there is something to divide by
@@ -124,7 +116,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain - step.asked);
-    const Chances chances = chances_of(step.change, least, usual_chances);
+    const Chances chances = chances_of(step.change, novelty, usual_chances);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
       const double comes_back = gone * chances.returns;
@@ -154,7 +146,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
     }
     on_[back] = {share[0], share[1]};
     after.step(here.likelier, here.gone_likelier,
-               chances_of(trace[back].change, least, usual_chances));
+               chances_of(trace[back].change, novelty, usual_chances));
   }
   return on_.first(asked);
 }

@@ -187,7 +187,7 @@ class NaiveBelief {
     if (!localises_ && evidence.doubt > 3.0) {
       for (auto& [row, at] : rows_) at.past = std::min(at.past, here);
     }
-    past = std::max(past - 0.1 * w, here);
+    past = std::max(past, here);
     best = past;
   }
 

@@ -33,35 +33,27 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
       trace.push_back({i, 16.0 * share() - 8.0, share(), share(), 0.0, random() % 2 == 0});
     }
     const std::size_t asked = 1 + random() % frames;
-    const std::size_t agreed = random() % (frames + 1);
-    const std::size_t born = agreed + random() % (frames + 1 - agreed);
     // Frames are counted from the oldest. One that has changed wholly is a cut in every other
     // drive.
-    const double least = round % 2 == 0 ? 0.1 : 0.3;
+    const double often = round % 2 == 0 ? 0.2 : 0.4;
     const auto step_of = [&](std::size_t i) { return trace[frames - 1 - i]; };
     const auto is_cut = [&](std::size_t i) { return round % 2 == 0 && step_of(i).change > 0.6; };
     double gained = 0.0;
     double novelty = 0.0;
-    for (std::size_t i = frames - agreed; i < frames; ++i) {
-      gained += step_of(i).gain;
-      novelty += std::max(step_of(i).novelty, least);
+    for (const BeliefTraces::Step& step : trace) {
+      gained += step.gain;
+      novelty += step.novelty;
     }
-    const auto at_least = [&](double part) {
-      return agreed == 0 ? usual : std::max(usual, part * gained / novelty);
-    };
+    const double usually = loops ? std::max(usual, 0.7 * gained / novelty) : usual;
     std::vector<BeliefTraces::Step> less = trace;
-    span.ask(less, agreed, born, usual, least);
-    const auto found = span.find(less, before, usual, least, jumps, asked);
+    span.ask(less, usual);
+    const auto found = span.find(less, before, usual, often, jumps, asked);
     ASSERT_EQ(found.size(), asked);
     // How likely a frame is, in a state, after that of the frame before.
     enum State : std::size_t { fresh, on, gone };
     const auto seen = [&](std::size_t i, State state) {
       const auto step = step_of(i);
-      const double usually = i < frames - born     ? at_least(0.5)
-                             : i < frames - agreed ? at_least(0.9)
-                             : loops               ? at_least(0.7)
-                                                   : usual;
-      const double asked_of_it = usually * std::max(step.novelty, least);
+      const double asked_of_it = usually * step.novelty;
       if (state == on) return std::exp(step.gain - asked_of_it);
       if (state == fresh) return 1.0;
       if (loops) {
@@ -120,7 +112,7 @@ TEST(TraceSpan, IsLeftWhereManyFramesSayMuchAgainstIt) {
     std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
     trace.resize(50, {0, gain, 0.5, 0.5});
     trace.resize(70, {0, 1.0, 0.5, 0.5});
-    const auto on = span.find(trace, 0.0, 0.0, 0.25, 0.0, trace.size());
+    const auto on = span.find(trace, 0.0, 0.0, 0.5, 0.0, trace.size());
     EXPECT_EQ(on[35].still > 0.99, gain > -0.5) << on[35].still;
     EXPECT_EQ(on[35].still < 0.01, gain < -0.5) << on[35].still;
     EXPECT_GT(on[10].still, 0.99);
@@ -134,7 +126,7 @@ TEST(TraceSpan, ClosingLoopsItIsLeftBetweenFramesThatAreOnIt) {
   TestArena memory;
   TraceSpan span(memory.arena, Use::close_loops, 100);
   constexpr double usual = 0.1;
-  constexpr double least = 0.25;
+  constexpr double novelty = 0.5;
   struct Between {
     double gain;
     bool elsewhere;
@@ -147,8 +139,8 @@ TEST(TraceSpan, ClosingLoopsItIsLeftBetweenFramesThatAreOnIt) {
     std::vector<BeliefTraces::Step> trace(20, {0, 2.0, 0.5, 0.5});
     trace.resize(70, {0, gain, 0.5, 0.5, 0.0, elsewhere});
     trace.resize(90, {0, 2.0, 0.5, 0.5});
-    span.ask(trace, 90, 90, usual, least);
-    const auto on = span.find(trace, 1.0, usual, least, 0.0, trace.size());
+    span.ask(trace, usual);
+    const auto on = span.find(trace, 1.0, usual, novelty, 0.0, trace.size());
     EXPECT_EQ(on[45].still < 0.01, is_left) << on[45].still;
     EXPECT_EQ(on[45].still > 0.99, !is_left) << on[45].still;
     EXPECT_GT(on[10].still, 0.99);
@@ -166,46 +158,14 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
     const bool on = i > 9 && i <= 19;
     trace.push_back({0, on ? 0.3 : -0.1, 0.1, cut ? 0.615 : 0.1});
   }
-  for (const double least : {0.05, 0.25}) {
-    SCOPED_TRACE(least);
-    const auto on = span.find(trace, 0.0, 0.0, least, 0.0, trace.size());
-    const bool sees_cuts = least < 0.15;
+  for (const double novelty : {0.1, 0.5}) {
+    SCOPED_TRACE(novelty);
+    const auto on = span.find(trace, 0.0, 0.0, novelty, 0.0, trace.size());
+    const bool sees_cuts = novelty < 0.3;
     EXPECT_EQ(on[20].still < 0.1, sees_cuts) << on[20].still;
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
     EXPECT_EQ(on[10].still > 0.9, sees_cuts) << on[10].still;
     EXPECT_EQ(on[9].still < 0.1, sees_cuts) << on[9].still;
-  }
-}
-
-TEST(TraceSpan, AFrameFromBeforeTheBeliefAgreedHasToGainAsMuchAsThoseSince) {
-  TestArena memory;
-  TraceSpan span(memory.arena, Use::localise, 40);
-  for (const double gain : {0.15, 0.95}) {
-    SCOPED_TRACE(gain);
-    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
-    trace.resize(30, {0, gain, 0.5, 0.5});
-    constexpr double usual = 0.1;
-    constexpr double least = 0.25;
-    std::vector<BeliefTraces::Step> all = trace;
-    span.ask(all, 30, 30, usual, least);
-    EXPECT_GT(span.find(all, 0.0, usual, least, 0.0, 30)[29].still, 0.5);
-    span.ask(trace, 20, 30, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[25].still > 0.5, gain > 0.5);
-    EXPECT_GT(span.find(trace, 0.0, usual, least, 0.0, 30)[15].still, 0.99);
-  }
-}
-
-TEST(TraceSpan, AFrameFromBeforeTheTraceWasBornHasToGainHalfAsMuch) {
-  TestArena memory;
-  TraceSpan span(memory.arena, Use::localise, 40);
-  for (const double gain : {-0.2, 0.6}) {
-    SCOPED_TRACE(gain);
-    std::vector<BeliefTraces::Step> trace(20, {0, 1.0, 0.5, 0.5});
-    trace.resize(30, {0, gain, 0.5, 0.5});
-    constexpr double usual = 0.1;
-    constexpr double least = 0.25;
-    span.ask(trace, 20, 20, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 30)[29].still > 0.5, gain > 0.0);
   }
 }
 
@@ -215,13 +175,13 @@ TEST(TraceSpan, LastsWhereAFrameGainsLessThanIsUsualButMoreThanOneRowDoes) {
   TestArena memory;
   TraceSpan span(memory.arena, Use::localise, 60);
   constexpr double usual = 1.0;
-  constexpr double least = 0.1;
+  constexpr double novelty = 0.2;
   for (const double gain : {-0.15, 0.05}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> trace(20, {0, gain, 0.5, 0.5});
     trace.resize(50, {0, 1.0, 0.5, 0.5});
-    span.ask(trace, 50, 50, usual, least);
-    EXPECT_EQ(span.find(trace, 0.0, usual, least, 0.0, 50)[0].still > 0.5, gain > 0.0);
+    span.ask(trace, usual);
+    EXPECT_EQ(span.find(trace, 0.0, usual, novelty, 0.0, 50)[0].still > 0.5, gain > 0.0);
   }
 }
 
@@ -231,17 +191,17 @@ TEST(TraceSpan, ClosingLoopsFirstFramesHaveToGainMoreThanHalfAsMuch) {
   TestArena memory;
   TraceSpan span(memory.arena, Use::close_loops, 60);
   constexpr double usual = 0.1;
-  constexpr double least = 0.25;
+  constexpr double novelty = 0.5;
   for (const double gain : {0.1, 0.9}) {
     SCOPED_TRACE(gain);
     std::vector<BeliefTraces::Step> begins(30, {0, 1.0, 0.5, 0.5});
     begins.resize(50, {0, gain, 0.5, 0.5});
-    span.ask(begins, 50, 50, usual, least);
-    EXPECT_EQ(span.find(begins, 0.0, usual, least, 0.0, 50)[45].still > 0.5, gain > 0.5);
+    span.ask(begins, usual);
+    EXPECT_EQ(span.find(begins, 0.0, usual, novelty, 0.0, 50)[45].still > 0.5, gain > 0.5);
     std::vector<BeliefTraces::Step> ends(20, {0, gain, 0.5, 0.5});
     ends.resize(50, {0, 1.0, 0.5, 0.5});
-    span.ask(ends, 50, 50, usual, least);
-    EXPECT_GT(span.find(ends, 0.0, usual, least, 0.0, 50)[5].still, 0.99);
+    span.ask(ends, usual);
+    EXPECT_GT(span.find(ends, 0.0, usual, novelty, 0.0, 50)[5].still, 0.99);
   }
 }
 

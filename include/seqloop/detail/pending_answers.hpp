@@ -92,8 +92,8 @@ class PendingAnswers {
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
   /// @param oldest frame that belongs together with the newest: those before it wait no longer
-  void answer(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
-              std::uint64_t newest, std::uint64_t oldest) noexcept;
+  void answer(PlaceMap& map, const FrameSteps& steps, std::uint64_t newest,
+              std::uint64_t oldest) noexcept;
 
   /// Takes an answer that did not wait.
   void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
@@ -124,7 +124,6 @@ class PendingAnswers {
     bool readable;
     bool believed;          // whether it lies on a trace
     bool left;              // by the trace of the newest frame that was looked back from
-    bool before_birth;      // of the trace, which was followed back
     std::size_t row;        // there
     double right;           // that the trace is right: the most that was ever said
     double same_place;      // the same, with nothing asked besides
@@ -133,7 +132,6 @@ class PendingAnswers {
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
     double new_place;       // belief in none, as it came
     std::size_t likeliest;  // row, as it came; `none` where there was none
-    double novelty;         // of the frame
     std::size_t lines;      // found
     Lead lead;              // that `margin` took the logarithm of last
   };
@@ -146,7 +144,6 @@ class PendingAnswers {
     TraceSpan::On on;       // that the frame lies on it
     TraceSpan::On carried;  // as `Waiting` has it
     std::uint64_t lag;      // frames that have come since
-    bool before_birth;      // of the trace, which was followed back
   };
 
   /// A power of two, so that nothing is divided: a step asks for this many hundred times.
@@ -166,21 +163,14 @@ class PendingAnswers {
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void ask_windows(const PlaceMap& map, std::uint64_t newest,
                    std::span<BeliefTraces::Step> trace) noexcept;
-  [[nodiscard]] static bool contradicts(const PlaceMap& map, const Waiting& then,
-                                        std::size_t row) noexcept;
   void ask_belief(const PlaceMap& map, std::uint64_t newest,
                   std::span<BeliefTraces::Step> trace) noexcept;
-  [[nodiscard]] std::size_t agreed(const PlaceMap& map, std::uint64_t newest, std::uint64_t oldest,
-                                   std::span<const BeliefTraces::Step> trace) noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
-  [[nodiscard]] bool hardly_changes(const PlaceBelief& belief, std::uint64_t frame) noexcept;
   [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
-  [[nodiscard]] Match match(const PlaceBelief& belief, const PlaceMap& map,
-                            std::uint64_t frame) noexcept;
-  void give(const PlaceBelief& belief, PlaceMap& map, const FrameSteps& steps,
-            Waiting& waiting) noexcept;
+  [[nodiscard]] Match match(const PlaceMap& map, std::uint64_t frame) noexcept;
+  void give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting) noexcept;
   void link(PlaceMap& map, const FrameSteps& steps, Waiting waiting) noexcept;
 
   const Trajectories* trajectories_;

@@ -28,25 +28,16 @@ class TraceSpan {
     [[nodiscard]] double where(bool was_left) const noexcept { return was_left ? left : still; }
   };
 
-  /// Says what each frame has to gain.
-  /// @param trace  the newest frame first
-  /// @param agreed frames, from the newest on, since the belief of the time agreed with the trace,
-  ///               0 to all. In a drive that closes loops each has to gain .7 of what they gain
-  ///               on average. Before them the robot may have been elsewhere, and where roads meet,
-  ///               the frames that lead there look alike: such a frame has to gain nearly as much
-  ///               as those since
-  /// @param born   frames, from the newest on, since the trace was born, `agreed` to all. Before
-  ///               them it leads on through the drive's first frames, where robots seldom come onto
-  ///               the map: such a frame has to gain half as much
-  /// @param usual  what wrong rows gain, by novelty; 0 or more
-  /// @param least  novelty that a frame has for this at least
-  void ask(std::span<BeliefTraces::Step> trace, std::size_t agreed, std::size_t born, double usual,
-           double least) const noexcept;
+  /// Says what each frame has to gain. Where roads meet, the frames that lead there look alike: in
+  /// a drive that closes loops each has to gain .7 of what they gain on average.
+  /// @param trace the newest frame first
+  /// @param usual what wrong rows gain, by novelty; 0 or more
+  void ask(std::span<BeliefTraces::Step> trace, double usual) const noexcept;
 
   /// @param trace  the newest frame first; at most `most`
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
   /// @param usual  as `ask` has it
-  /// @param least  as `ask` has it
+  /// @param novelty what is usually new of this drive's frames, 0 .. 1
   /// @param jumps  the chance that the robot is carried away with a frame, beyond what is usual, 0
   ///               .. 0.5. The higher it is, the less does `before` speak for the oldest frame
   /// @param asked  frames that it is asked for, from the newest on; at most those of the trace
@@ -54,7 +45,7 @@ class TraceSpan {
   /// Work: as many exponentials as the trace has frames, twice where loops are closed. Allocates:
   /// never.
   std::span<const On> find(std::span<const BeliefTraces::Step> trace, double before, double usual,
-                           double least, double jumps, std::size_t asked) noexcept;
+                           double novelty, double jumps, std::size_t asked) noexcept;
 
  private:
   /// How likely the frames so far are, by where the robot is: not on the trace yet, on it, gone.
