@@ -181,8 +181,27 @@ class Arrays(unittest.TestCase):
         odd = numpy.frombuffer(b"x" + self.query[0].tobytes(), numpy.float32, offset=1)
         report = self.detector.step(numpy.require(odd, numpy.float32, "CA"))
         self.assertEqual(report.newest, 0, "what was refused is no frame")
-        with self.assertRaises(TypeError):
-            self.detector.step("descriptor")
+
+    def test_what_is_no_array_is_told_in_a_sentence(self) -> None:
+        describer = seqloop.Describer()
+        rows = self.query.tolist()
+        for call, words in (
+                (lambda: seqloop.match(rows, "q.npy", dss=3),
+                 "(?s)reference: its type is list, not numpy.ndarray; numpy.asarray.reference, numpy.float32.*"
+                 "query: 'q.npy' is a name, not an array; numpy.load.*'dss'"),
+                (lambda: self.detector.step(rows[0]), r"descriptor: .* list.*asarray\(descriptor, numpy.float32\)$"),
+                (lambda: self.detector.step("row.npy"), "descriptor: 'row.npy' is a name, not an array; numpy.load"),
+                (lambda: seqloop.PlaceMap(200, 48).add_drive(rows), "descriptors: its type is list"),
+                (lambda: seqloop.differences(rows, None),
+                 "(?s)reference: its type is list.*query: its type is NoneType"),
+                (lambda: seqloop.match(None, rows[0][0]), "query: its type is float"),
+                (lambda: describer.describe(rows), r"picture: .* list.*asarray\(picture, numpy.uint8\)$"),
+                (lambda: describer.describe(None), "picture: its type is NoneType"),
+                (lambda: describer.describe(pathlib.Path("a.jpg")), "picture: 'a.jpg' is a name.*cv2.imread")):
+            with self.assertRaisesRegex(seqloop.SetupError, words) as raised:
+                call()
+            self.assertLess(len(str(raised.exception)), 300)
+        self.assertEqual(self.detector.step(None).newest, 0, "what was refused is no frame")
 
     def test_read_only_arrays_are_read_where_they_lie(self) -> None:
         frozen = self.query.copy()
@@ -496,8 +515,10 @@ class SameAsTheProgram(unittest.TestCase):
         ones = numpy.ones((3, 4))
         for reference, query, settings, words in (
                 ("a.npy", pathlib.Path("b.npy"), {}, "(?s)reference: 'a.npy' is a name.*query: 'b.npy' is a name"),
+                (ones[0].astype(int), ones[:0], {}, r"(?s)reference: .*\(4,\).*reference: .*int64.*query: .*\(0, 4\)"),
                 (ones[0], ones.astype(int), {"method": "seqslam"}, r"(?s)reference: .*\(4,\).*query: .*int64.*method"),
-                (numpy.float32(3), ones, {}, r"reference: its shape is \(\)"),
+                (numpy.array(3.0), ones, {}, r"reference: its shape is \(\)"),
+                (numpy.float32(3), ones, {}, "reference: its type is float32, not numpy.ndarray"),
                 (ones, ones[:, :3], {}, "4 values in a row of one, 3 in a row of the other")):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.differences(reference, query, **settings)

@@ -138,6 +138,15 @@ py::str readable(std::string_view text) {
   return py::reinterpret_steal<py::str>(decoded);
 }
 
+py::list listed(const Faults& faults) {
+  py::list list;
+  for (const Fault& fault : faults) {
+    const Fault said = in_keywords(fault);
+    list.append(py::make_tuple(readable(said.what), readable(said.why), readable(said.remedy)));
+  }
+  return list;
+}
+
 void set_os_error(std::string_view text) { PyErr_SetObject(PyExc_OSError, readable(text).ptr()); }
 
 void translate_faults(const py::object& error) {
@@ -147,18 +156,32 @@ void translate_faults(const py::object& error) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const SetupError& setup) {
       Faults faults;
-      py::list listed;
-      for (const Fault& fault : setup.faults()) {
-        const Fault said = in_keywords(fault);
-        listed.append(
-            py::make_tuple(readable(said.what), readable(said.why), readable(said.remedy)));
-        faults.push_back(said);
-      }
+      for (const Fault& fault : setup.faults()) faults.push_back(in_keywords(fault));
       py::object instance = (*type)(readable(SetupError(std::move(faults)).what()));
-      instance.attr("faults") = listed;
+      instance.attr("faults") = listed(setup.faults());
       PyErr_SetObject(type->ptr(), instance.ptr());
     }
   });
+}
+
+Array array_of(const Given& given, const std::string& name, const std::string& type,
+               const std::string& reading) {
+  const py::object& value = given.value;
+  if (py::isinstance<Array>(value)) return py::reinterpret_borrow<Array>(value);
+  if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) {
+    const py::object path = py::module_::import("os").attr("fspath")(value);
+    throw SetupError(
+        {name, py::repr(path).cast<std::string>() + " is a name, not an array", reading});
+  }
+  throw SetupError({name,
+                    "its type is " + py::type::of(value).attr("__name__").cast<std::string>() +
+                        ", not numpy.ndarray",
+                    fmt::format("numpy.asarray({}, numpy.{})", name, type)});
+}
+
+Array descriptors_of(const Given& given, const std::string& name) {
+  return array_of(given, name, "float32",
+                  "numpy.load a described drive, or take describe_drive of pictures");
 }
 
 bool is_plain(const Array& array) {
@@ -168,7 +191,8 @@ bool is_plain(const Array& array) {
          (static_cast<unsigned>(array.flags()) & needed) == needed;
 }
 
-std::span<const float> descriptor(const Array& array, std::size_t size) {
+std::span<const float> descriptor(const Given& given, std::size_t size) {
+  const Array array = descriptors_of(given, "descriptor");
   const bool fits = array.ndim() == 1 && static_cast<std::size_t>(array.size()) == size;
   if (fits && is_plain(array)) {
     return {static_cast<const float*>(array.data()), size};

@@ -20,6 +20,22 @@ namespace seqloop::python {
 /// An array as Python gave it, of any type.
 using Array = pybind11::array;
 
+/// What Python gave in place of an array. Any value is taken, to be looked at with all others: what
+/// pybind11 refuses itself is refused alone, and printed whole, each number of a list.
+struct Given {
+  pybind11::object value;
+};
+
+/// The array that was given. @param name of the argument
+/// @param type    what its values should be, `float32`
+/// @param reading what to do where it is the name of a file
+/// Throws SetupError: it is none.
+[[nodiscard]] Array array_of(const Given& given, const std::string& name, const std::string& type,
+                             const std::string& reading);
+
+/// An array that should hold descriptors. Throws SetupError.
+[[nodiscard]] Array descriptors_of(const Given& given, const std::string& name);
+
 /// Sets options by keyword arguments: `full_map="thin"` for `--full-map thin`. True and False are
 /// on and off, a list is its values with commas between; None leaves an option as it is.
 /// @return everything that is wrong with them
@@ -41,11 +57,13 @@ template <class Settings>
 /// Text of a file, in which what is no UTF-8 becomes U+FFFD.
 [[nodiscard]] pybind11::str readable(std::string_view text);
 
+/// A tuple (what, why, remedy) for each fault, flags spelt as keyword arguments.
+[[nodiscard]] pybind11::list listed(const Faults& faults);
+
 /// Sets Python's error to an OSError. Its text may hold a file's name, which may be no UTF-8.
 void set_os_error(std::string_view text);
 
-/// From now on SetupError arrives in Python as `error`, of which `faults` holds a tuple
-/// (what, why, remedy) for each fault, flags spelt as keyword arguments.
+/// From now on SetupError arrives in Python as `error`, of which `faults` holds the list of them.
 void translate_faults(const pybind11::object& error);
 
 /// Whether an array is float32 and lies in C order where floats may lie, so that it needs no copy.
@@ -53,7 +71,7 @@ void translate_faults(const pybind11::object& error);
 
 /// A descriptor, where it lies. @param size D
 /// Throws SetupError: it is not float32 [D] in C order, where floats may lie.
-[[nodiscard]] std::span<const float> descriptor(const Array& array, std::size_t size);
+[[nodiscard]] std::span<const float> descriptor(const Given& given, std::size_t size);
 
 /// An array that takes over what was computed.
 template <class Value>
@@ -66,3 +84,18 @@ template <class Value>
 void look_for_interruption();
 
 }  // namespace seqloop::python
+
+namespace pybind11::detail {
+
+template <>
+class type_caster<seqloop::python::Given> {
+ public:
+  PYBIND11_TYPE_CASTER(seqloop::python::Given, const_name("numpy.ndarray"));
+
+  bool load(handle given, bool /*convert*/) {
+    value.value = reinterpret_borrow<object>(given);
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

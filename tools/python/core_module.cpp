@@ -42,7 +42,7 @@ class Stepper {
     map.begin();
   }
 
-  Report step(const std::optional<Array>& descriptor, std::optional<double> time_s) {
+  Report step(const std::optional<Given>& descriptor, std::optional<double> time_s) {
     std::span<const float> values;
     if (descriptor) values = python::descriptor(*descriptor, map_->places().descriptor_size());
     if (time_s && !std::isfinite(*time_s)) {

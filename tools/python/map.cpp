@@ -96,7 +96,7 @@ std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   return map;
 }
 
-void Map::add_drive(const Array& descriptors) {
+void Map::add_drive(const Given& descriptors) {
   Faults faults;
   if (in_file_) {
     faults.push_back({"map", "it is kept in a file: a detector adds its drive to it",
@@ -106,7 +106,9 @@ void Map::add_drive(const Array& descriptors) {
                       "leave close_loops out to localise in an earlier drive"});
   }
   std::optional<files::Matrix> drive;
-  program::collect(faults, [&] { drive = matrix(descriptors, "descriptors", config_.difference); });
+  program::collect(faults, [&] {
+    drive = matrix(drive_of(descriptors, "descriptors"), "descriptors", config_.difference);
+  });
   if (drive && drive->columns != map_.descriptor_size()) {
     faults.push_back({"descriptors",
                       "a row has " + std::to_string(drive->columns) + " values, the map's have " +

@@ -34,7 +34,7 @@ class Map {
                                                  const pybind11::kwargs& settings);
 
   /// Fills it with a drive to localise in. Throws SetupError, KeyboardInterrupt; then it is empty.
-  void add_drive(const Array& descriptors);
+  void add_drive(const Given& descriptors);
 
   [[nodiscard]] std::size_t size();
 

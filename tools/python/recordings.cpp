@@ -51,19 +51,29 @@ py::dict columns_of(const program::MatchedDrive& matched) {
       "accepted"_a = column([](const Frame& frame) { return frame.answer.gate == Gate::match; }));
 }
 
-py::dict match(const std::optional<Array>& reference, const Array& query,
+py::dict match(const std::optional<Given>& reference, const std::optional<Given>& query,
                const py::kwargs& settings) {
   Faults faults;
-  const Array& mapped = reference ? *reference : query;
-  const auto rows = static_cast<std::size_t>(mapped.ndim() == 2 ? mapped.shape(0) : 0);
+  std::optional<Array> mapped;
+  std::optional<Array> driven;
+  if (reference) program::collect(faults, [&] { mapped = drive_of(*reference, "reference"); });
+  if (query) {
+    program::collect(faults, [&] { driven = drive_of(*query, "query"); });
+  } else {
+    faults.push_back({"query", "not given", "match(None, query) closes loops within one drive"});
+  }
+  const std::optional<Array>& places_of = reference ? mapped : driven;
   const MatcherConfig config =
-      config_of(reference ? Use::localise : Use::close_loops, rows, settings, faults);
+      config_of(reference ? Use::localise : Use::close_loops,
+                places_of ? static_cast<std::size_t>(places_of->shape(0)) : 0, settings, faults);
   std::optional<files::Matrix> places;
   std::optional<files::Matrix> frames;
-  if (reference) {
-    program::collect(faults, [&] { places = matrix(*reference, "reference", config.difference); });
+  if (mapped) {
+    program::collect(faults, [&] { places = matrix(*mapped, "reference", config.difference); });
   }
-  program::collect(faults, [&] { frames = matrix(query, "query", config.difference); });
+  if (driven) {
+    program::collect(faults, [&] { frames = matrix(*driven, "query", config.difference); });
+  }
   if (frames && (!reference || places)) {
     program::check_match(faults, config, places ? &*places : nullptr, *frames);
   }
@@ -148,19 +158,23 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
 
 }  // namespace
 
-/// A copy of an array of descriptors, of unit length where Euclid compares, as the program reads
-/// it. @param name for messages
-files::Matrix matrix(const Array& array, const std::string& name, Difference difference) {
+Array drive_of(const Given& given, const std::string& name) {
+  Array array = descriptors_of(given, name);
+  Faults faults;
   if (array.ndim() != 2 || array.size() == 0) {
-    throw SetupError({name, "its shape is " + py::str(array.attr("shape")).cast<std::string>(),
+    faults.push_back({name, "its shape is " + py::str(array.attr("shape")).cast<std::string>(),
                       "give [N, D]: a row for each frame"});
   }
-  const char kind = array.dtype().kind();
-  if (kind != 'f') {
-    throw SetupError({name, "it is " + py::str(array.dtype()).cast<std::string>(),
+  if (array.dtype().kind() != 'f') {
+    faults.push_back({name, "it is " + py::str(array.dtype()).cast<std::string>(),
                       "give floating-point descriptors"});
   }
-  const py::array_t<float, py::array::c_style | py::array::forcecast> plain(array);
+  program::refuse(std::move(faults));
+  return array;
+}
+
+files::Matrix matrix(const Array& drive, const std::string& name, Difference difference) {
+  const py::array_t<float, py::array::c_style | py::array::forcecast> plain(drive);
   files::Matrix copy{static_cast<std::size_t>(plain.shape(0)),
                      static_cast<std::size_t>(plain.shape(1)),
                      {plain.data(), plain.data() + plain.size()}};
@@ -180,7 +194,15 @@ MatcherConfig config_of(Use use, std::size_t places, const py::kwargs& settings,
 }
 
 void add_recordings(py::module_& module) {
-  module.def("match", &match, py::arg("reference").none(true), py::arg("query"));
+  module.def("match", &match, py::arg("reference").none(true), py::arg("query").none(true));
+  module.def(
+      "drive_faults",
+      [](const Given& drive, const std::string& name) {
+        Faults faults;
+        program::collect(faults, [&] { static_cast<void>(drive_of(drive, name)); });
+        return listed(faults);
+      },
+      py::arg("drive"), py::arg("name"));
   module.def("evaluate", &evaluate, py::arg("query"), py::arg("match"), py::arg("threshold"),
              py::arg("probability"), py::arg("accepted").none(true), py::arg("threshold_on"),
              py::arg("pairs").none(true), py::arg("frames"));

@@ -12,10 +12,14 @@
 
 namespace seqloop::python {
 
-/// A copy of an array of descriptors, of unit length where Euclid compares, as the program reads
-/// it. @param name for messages
-/// Throws SetupError: it is no [N, D] of finite floating-point numbers.
-[[nodiscard]] files::Matrix matrix(const Array& array, const std::string& name,
+/// The descriptors that were given. @param name of the argument
+/// Throws SetupError: they are no array [N, D] of floating-point numbers.
+[[nodiscard]] Array drive_of(const Given& given, const std::string& name);
+
+/// A copy of such an array, of unit length where Euclid compares, as the program reads it.
+/// @param name of the argument
+/// Throws SetupError: its numbers are not finite.
+[[nodiscard]] files::Matrix matrix(const Array& drive, const std::string& name,
                                    Difference difference);
 
 /// What the settings say of a map of that many places; adds what is wrong with them.

@@ -20,7 +20,8 @@ namespace {
 namespace py = pybind11;
 
 /// A picture, where it lies.
-Image image(const Array& picture) {
+Image image(const Given& given) {
+  const Array picture = array_of(given, "picture", "uint8", "read it, with cv2.imread");
   const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(picture);
   const bool gray = picture.ndim() == 2;
   const bool colour = picture.ndim() == 3 && picture.shape(2) == 3;
@@ -67,7 +68,7 @@ class PictureDescriber {
 
   [[nodiscard]] std::string fingerprint() const { return program::fingerprint(settings_); }
 
-  py::array_t<float> describe(const Array& picture) {
+  py::array_t<float> describe(const Given& picture) {
     const Image looked_at = image(picture);
     py::array_t<float> descriptor(static_cast<py::ssize_t>(size()));
     const std::span<float> values(descriptor.mutable_data(), size());

@@ -28,8 +28,9 @@ A map that lasts, in the same files as `seqloop run --map`, of many sessions:
 `map_info`, `check_map` and `merge_maps` are for such files as a whole.
 
 Settings are keyword arguments with the names of the program's flags: `seqloop.settings()` lists
-them. What goes wrong is a SetupError, a ValueError that tells every fault at once. Arguments of a
-wrong Python type, such as a string for an array, are TypeErrors.
+them. What goes wrong is a SetupError, a ValueError that tells every fault at once. So is what is
+given in place of a NumPy array, such as a list or a file's name. Other arguments of a wrong Python
+type, such as a string for a number of places, are TypeErrors.
 
 Frames and places are counted from 0. Differences and scores are 0 to 2, lower is better;
 probabilities 0 to 1.
@@ -157,12 +158,6 @@ def _setup_error(faults: list[tuple[str, str, str]]) -> SetupError:
     return error
 
 
-def _named_files(**arrays: object) -> list[tuple[str, str, str]]:
-    return [(name, f"'{os.fspath(given)}' is a name, not an array of descriptors",
-             "numpy.load a described drive, or take describe_drive of pictures")
-            for name, given in arrays.items() if isinstance(given, (str, os.PathLike))]
-
-
 def match(reference: Floats | None, query: Floats | None = None, **settings: Setting) -> Matches:
     """Matches a drive with an earlier one, or with itself, as `seqloop match` does.
 
@@ -171,11 +166,6 @@ def match(reference: Floats | None, query: Floats | None = None, **settings: Set
     settings: see seqloop.settings().
     Errors: SetupError.
     """
-    faults = _named_files(reference=reference, query=query)
-    if query is None:
-        faults.append(("query", "not given", "match(None, query) closes loops within one drive"))
-    if faults or query is None:
-        raise _setup_error(faults)
     return Matches(**_core.match(reference, query, **settings))
 
 
@@ -218,23 +208,16 @@ def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.
     matcher itself never keeps it whole.
     Errors: SetupError.
     """
-    faults = _named_files(reference=reference, query=query)
-    if not faults:
-        for name, given in (("reference", reference), ("query", query)):
-            kind, shape = numpy.asarray(given).dtype, numpy.shape(given)
-            if len(shape) != 2:
-                faults.append((name, f"its shape is {shape}", "give [N, D]: a row for each frame"))
-            if kind.kind != "f":
-                faults.append((name, f"it is {kind}", "give floating-point descriptors"))
-    if not faults and numpy.shape(reference)[1] != numpy.shape(query)[1]:
-        faults.append(("reference, query", f"{numpy.shape(reference)[1]} values in a row of one, "
-                       f"{numpy.shape(query)[1]} in a row of the other", "describe both with the same model and layer"))
+    faults = _core.drive_faults(reference, "reference") + _core.drive_faults(query, "query")
+    if not faults and reference.shape[1] != query.shape[1]:
+        faults.append(("reference, query", f"{reference.shape[1]} values in a row of one, "
+                       f"{query.shape[1]} in a row of the other", "describe both with the same model and layer"))
     if settings.get("method") not in (None, "single"):
         faults.append(("method", "differences are of single frames", "leave method out"))
     if faults:
         raise _setup_error(faults)
     settings["method"] = "single"
-    places = PlaceMap(len(reference), numpy.shape(reference)[1], False, **settings)
+    places = PlaceMap(len(reference), reference.shape[1], False, **settings)
     places.add_drive(reference)
     detector = Detector(places)
     matrix = numpy.full((len(reference), len(query)), numpy.nan, numpy.float32)
