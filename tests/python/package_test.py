@@ -495,6 +495,23 @@ class SameAsTheProgram(unittest.TestCase):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.evaluate(matches, truth, **settings)
 
+    def test_measures_refuse_all_at_once(self) -> None:
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.evaluate("m.csv", [[1, 2, 3, 4]], frames=-1, threshold_on="speed", toll=3)
+        for word in ("matches: its type is str, not seqloop.Matches; give what match", "`seqloop eval --matches`",
+                     "frames: '-1' is no whole number of 0 or more", "truth: it is int64 of shape (1, 4)",
+                     "threshold_on: 'speed' is none", "'toll': is no setting"):
+            self.assertIn(word, str(raised.exception))
+        self.assertEqual(len(raised.exception.faults), 5)
+        matches = seqloop.match(self.reference, self.query)
+        for settings, words in (({"frames": 1.5}, "frames: '1.5' is no whole number"),
+                                ({"frames": True}, "frames: True is not of its type"),
+                                ({"threshold_on": 3}, "threshold_on: '3' is none"),
+                                ({"truth": self.folder}, "truth: it is object"), ({"matches": None}, "NoneType")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                seqloop.evaluate(**{"matches": matches, "truth": "identity", **settings})
+        self.assertEqual(seqloop.evaluate(matches, "identity", frames=numpy.int64(7)).frames, 7)
+
     def test_the_difference_matrix(self) -> None:
         matrix = seqloop.differences(self.reference, self.query, standardise=False, arithmetic="float")
         naive = numpy.linalg.norm(self.reference[:, None] - self.query[None], axis=2)

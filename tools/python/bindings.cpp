@@ -164,6 +164,10 @@ void translate_faults(const py::object& error) {
   });
 }
 
+std::string type_name(const py::handle& value) {
+  return py::type::handle_of(value).attr("__name__").cast<std::string>();
+}
+
 Array array_of(const Given& given, const std::string& name, const std::string& type,
                const std::string& reading) {
   const py::object& value = given.value;
@@ -173,9 +177,7 @@ Array array_of(const Given& given, const std::string& name, const std::string& t
     throw SetupError(
         {name, py::repr(path).cast<std::string>() + " is a name, not an array", reading});
   }
-  throw SetupError({name,
-                    "its type is " + py::type::of(value).attr("__name__").cast<std::string>() +
-                        ", not numpy.ndarray",
+  throw SetupError({name, "its type is " + type_name(value) + ", not numpy.ndarray",
                     fmt::format("numpy.asarray({}, numpy.{})", name, type)});
 }
 

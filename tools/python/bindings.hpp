@@ -26,6 +26,9 @@ struct Given {
   pybind11::object value;
 };
 
+/// What a value is, in a word.
+[[nodiscard]] std::string type_name(const pybind11::handle& value);
+
 /// The array that was given. @param name of the argument
 /// @param type    what its values should be, `float32`
 /// @param reading what to do where it is the name of a file

@@ -87,23 +87,21 @@ py::dict match(const std::optional<Given>& reference, const std::optional<Given>
   return columns_of(matched);
 }
 
-/// @param truth [M, 2] query, reference or [M, 3] with a tolerance; none: as the settings say
-py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std::int64_t>& match,
-                  const py::array_t<double>& threshold, const py::array_t<double>& probability,
-                  const std::optional<py::array_t<bool>>& accepted, const std::string& threshold_on,
-                  const std::optional<py::array_t<std::int64_t>>& truth, std::uint64_t frames,
-                  const py::kwargs& given) {
-  Faults faults;
-  program::TruthSettings settings;
-  program::OptionTable options;
-  add_truth_options(options, settings);
-  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
-  evaluation::ThresholdOn on{};
-  try {
-    on = program::parse_threshold(threshold_on);
-  } catch (const std::invalid_argument& why) {
-    faults.push_back({"threshold_on", why.what()});
+/// The columns of `seqloop.Matches` that can be judged.
+std::vector<evaluation::Answer> answers_of(const py::object& matches,
+                                           const std::string& threshold_on,
+                                           evaluation::ThresholdOn on) {
+  for (const char* const name :
+       {"query", "match", threshold_on.c_str(), "probability", "accepted"}) {
+    if (py::hasattr(matches, name)) continue;
+    throw SetupError({"matches", "its type is " + type_name(matches) + ", not seqloop.Matches",
+                      "give what match returned; `seqloop eval --matches` reads match lists"});
   }
+  const py::array_t<std::int64_t> query(matches.attr("query"));
+  const py::array_t<std::int64_t> match(matches.attr("match"));
+  const py::array_t<double> threshold(matches.attr(threshold_on.c_str()));
+  const py::array_t<double> probability(matches.attr("probability"));
+  const auto accepted = matches.attr("accepted").cast<std::optional<py::array_t<bool>>>();
   std::vector<evaluation::Answer> answers;
   for (py::ssize_t i = 0; i < query.size(); ++i) {
     evaluation::Answer& answer = answers.emplace_back(evaluation::Answer{
@@ -111,15 +109,56 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
         evaluation::uncertainty(on, threshold.at(i)), probability.at(i)});
     if (accepted) answer.accepted = accepted->at(i);
   }
+  return answers;
+}
+
+/// Right answers as a CSV file has them. Throws SetupError.
+std::string table_of(const Array& truth) {
+  const bool whole = truth.dtype().kind() == 'i' || truth.dtype().kind() == 'u';
+  const bool fits = truth.ndim() == 2 && (truth.shape(1) == 2 || truth.shape(1) == 3);
+  if (!whole || !fits || truth.attr("min")(py::arg("initial") = 0).cast<std::int64_t>() < 0) {
+    throw SetupError({"truth",
+                      "it is " + py::str(truth.dtype()).cast<std::string>() + " of shape " +
+                          py::str(truth.attr("shape")).cast<std::string>(),
+                      "give integers of 0 or more, [T, 2] or [T, 3]: query, reference, tolerance"});
+  }
+  const py::array_t<std::int64_t> rows(truth);
+  std::string table = rows.shape(1) == 3 ? "query,reference,tolerance\n" : "query,reference\n";
+  for (py::ssize_t row = 0; row < rows.shape(0); ++row) {
+    for (py::ssize_t column = 0; column < rows.shape(1); ++column) {
+      table += (column > 0 ? "," : "") + std::to_string(rows.at(row, column));
+    }
+    table += '\n';
+  }
+  return table;
+}
+
+/// @param truth [T, 2] query, reference or [T, 3] with a tolerance; none: as the settings say
+/// @param given also `threshold_on` and `frames`
+py::dict evaluate(const py::object& matches, const std::optional<Array>& truth,
+                  const py::kwargs& given) {
+  Faults faults;
+  program::TruthSettings settings;
+  std::string threshold_on = "uniqueness";
+  std::size_t frames = 0;
+  program::OptionTable options;
+  add_truth_options(options, settings);
+  options.text("threshold-on", threshold_on, "give uniqueness, score or probability");
+  options.count("frames", frames, "give how many queries have a truth, or leave it out");
+  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
+  std::vector<evaluation::Answer> answers;
+  program::collect(faults, [&] {
+    evaluation::ThresholdOn on{};
+    try {
+      on = program::parse_threshold(threshold_on);
+    } catch (const std::invalid_argument& why) {
+      faults.push_back({"threshold_on", why.what()});
+      threshold_on = "uniqueness";
+    }
+    answers = answers_of(matches, threshold_on, on);
+  });
   evaluation::Truth known;
   if (truth) {
-    std::string table = truth->shape(1) == 3 ? "query,reference,tolerance\n" : "query,reference\n";
-    for (py::ssize_t row = 0; row < truth->shape(0); ++row) {
-      for (py::ssize_t column = 0; column < truth->shape(1); ++column) {
-        table += (column > 0 ? "," : "") + std::to_string(truth->at(row, column));
-      }
-      table += '\n';
-    }
     settings.file = "truth";  // any name: it is by a list, not by identity
     if (!settings.reference_positions.empty() || !settings.query_positions.empty()) {
       faults.push_back({"truth", "positions are given too", "leave one of them out"});
@@ -128,7 +167,7 @@ py::dict evaluate(const py::array_t<std::int64_t>& query, const py::array_t<std:
                         "reference_positions R.csv, query_positions Q.csv"});
     }
     program::collect(faults, [&] {
-      known = evaluation::Truth::from_csv(evaluation::CsvTable(table, "truth"),
+      known = evaluation::Truth::from_csv(evaluation::CsvTable(table_of(*truth), "truth"),
                                           settings.unlisted.value_or(evaluation::Unlisted::wrong));
     });
   } else {
@@ -203,9 +242,7 @@ void add_recordings(py::module_& module) {
         return listed(faults);
       },
       py::arg("drive"), py::arg("name"));
-  module.def("evaluate", &evaluate, py::arg("query"), py::arg("match"), py::arg("threshold"),
-             py::arg("probability"), py::arg("accepted").none(true), py::arg("threshold_on"),
-             py::arg("pairs").none(true), py::arg("frames"));
+  module.def("evaluate", &evaluate, py::arg("matches"), py::arg("pairs").none(true));
   module.def("settings", [] { return described(program::add_matcher_options); });
 }
 

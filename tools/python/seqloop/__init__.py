@@ -190,13 +190,7 @@ def evaluate(matches: Matches, truth: MapPath | Integers | None = None, *, thres
         settings["truth"] = truth
     else:
         pairs = numpy.asarray(truth)
-        if pairs.ndim != 2 or pairs.shape[1] not in (2, 3) or pairs.dtype.kind not in "iu" or (pairs < 0).any():
-            raise _setup_error([("truth", f"it is {pairs.dtype} of shape {pairs.shape}",
-                                 "give integers of 0 or more, [T, 2] or [T, 3]: query, reference, tolerance")])
-    sweeps = getattr(matches, threshold_on) if threshold_on in ("score", "probability") else matches.uniqueness
-    return Measures(**_core.evaluate(
-        matches.query, matches.match, sweeps, matches.probability, matches.accepted, threshold_on, pairs,
-        frames or 0, **settings))
+    return Measures(**_core.evaluate(matches, pairs, threshold_on=threshold_on, frames=frames, **settings))
 
 
 def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.typing.NDArray[numpy.float32]:
