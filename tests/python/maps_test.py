@@ -168,8 +168,8 @@ class Maps(unittest.TestCase):
         for word in ("ds: '-1'", "'dss': is no setting", "session: nothing is added to a map that is only read"):
             self.assertIn(word, str(raised.exception))
         self.assertFalse(file.exists(), "nothing is made where something is wrong")
-        with self.assertRaisesRegex(seqloop.SetupError, "(?s)max_places.*descriptor_size"):
-            seqloop.PlaceMap.open(file, 0, -1)
+        with self.assertRaisesRegex(seqloop.SetupError, "(?s)max_places: -1 is not.*descriptor_size: -735 is not"):
+            seqloop.PlaceMap.open(file, -735, -1)
         with self.assertRaisesRegex(seqloop.SetupError, "map"):
             self.open(file, read_only=True)
         with self.assertRaisesRegex(seqloop.SetupError, "memory"):

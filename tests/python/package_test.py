@@ -334,6 +334,7 @@ class Lives(unittest.TestCase):
         with self.assertRaises(seqloop.SetupError) as raised:
             seqloop.PlaceMap(-1, 0, ds=-1)
         self.assertEqual(len(raised.exception.faults), 3)
+        self.assertRegex(str(raised.exception), "(?s)max_places: -1 is not between 1 and .*descriptor_size: 0 is not")
         self.assertEqual((len(empty), empty.capacity, empty.descriptor_size), (200, 200, 48))
 
     def test_daemon_threads_end_with_the_program(self) -> None:

@@ -28,8 +28,14 @@ std::size_t size_of(std::int64_t value) {
   return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
 }
 
-void check(Faults& faults, const Capacity& capacity, const MatcherConfig& config) {
-  for (Fault& fault : validate(capacity, config)) {
+void check(Faults& faults, std::int64_t places, std::int64_t descriptor_size,
+           const MatcherConfig& config) {
+  for (Fault& fault : validate({size_of(places), size_of(descriptor_size)}, config)) {
+    // What is below 0 was looked at as 0.
+    const std::int64_t given = fault.what == "places"            ? places
+                               : fault.what == "descriptor_size" ? descriptor_size
+                                                                 : 0;
+    if (given < 0) fault.why.replace(0, 1, std::to_string(given));
     faults.push_back(program::in_flags(std::move(fault)));
   }
 }
@@ -38,7 +44,7 @@ void check(Faults& faults, const Capacity& capacity, const MatcherConfig& config
 
 Map::Map(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
          const py::kwargs& settings)
-    : Map(in_memory({size_of(places), size_of(descriptor_size)}, close_loops, settings)) {}
+    : Map(in_memory(places, descriptor_size, close_loops, settings)) {}
 
 Map::Map(Chosen chosen)
     : config_(chosen.config),
@@ -49,19 +55,20 @@ Map::Map(Chosen chosen)
   opencv::expect_builtin(map_);
 }
 
-Map::Chosen Map::in_memory(const Capacity& capacity, bool close_loops, const py::kwargs& settings) {
+Map::Chosen Map::in_memory(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
+                           const py::kwargs& settings) {
   Faults faults;
   const MatcherConfig config =
-      config_of(close_loops ? Use::close_loops : Use::localise, capacity.places, settings, faults);
-  check(faults, capacity, config);
+      config_of(close_loops ? Use::close_loops : Use::localise, size_of(places), settings, faults);
+  check(faults, places, descriptor_size, config);
   program::refuse(std::move(faults));
-  return {config, capacity};
+  return {config, {size_of(places), size_of(descriptor_size)}};
 }
 
 std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t descriptor_size,
                                std::optional<std::int64_t> places, const std::string& describer,
                                const py::kwargs& given) {
-  constexpr std::size_t usual_drive = 20'000;
+  constexpr std::int64_t usual_drive = 20'000;
   Faults faults;
   program::MapSettings settings;
   program::MatcherSettings matcher;
@@ -76,9 +83,9 @@ std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   chosen.method = matcher.method;
   chosen.config = resolve(matcher, settings.read_only ? Use::localise : Use::close_loops, faults);
   // The file is opened last: a missing one is made.
-  const std::size_t drive = places ? size_of(*places) : usual_drive;
-  check(faults, {drive, size_of(descriptor_size)}, chosen.config);
+  check(faults, places.value_or(usual_drive), descriptor_size, chosen.config);
   program::refuse(std::move(faults));
+  const std::size_t drive = size_of(places.value_or(usual_drive));
   const Unlocked unlocked;
   chosen.file = program::open_map(settings, chosen.config, size_of(descriptor_size), describer);
   chosen.capacity = chosen.file->capacity(drive);

@@ -70,7 +70,7 @@ class Map {
   };
   explicit Map(Chosen chosen);
 
-  static Chosen in_memory(const Capacity& capacity, bool close_loops,
+  static Chosen in_memory(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
                           const pybind11::kwargs& settings);
 
   std::mutex mutex_;
