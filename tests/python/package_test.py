@@ -3,6 +3,7 @@
 
 Wants PYTHONPATH, and in SEQLOOP_BINARY and SEQLOOP_STREET_BINARY the programs.
 """
+import copy
 import csv
 import json
 import os
@@ -512,6 +513,15 @@ class SameAsTheProgram(unittest.TestCase):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.evaluate(**{"matches": matches, "truth": "identity", **settings})
         self.assertEqual(seqloop.evaluate(matches, "identity", frames=numpy.int64(7)).frames, 7)
+
+    def test_matches_and_measures_equal_themselves(self) -> None:
+        matches = seqloop.match(self.reference, self.query)
+        for one in (matches, seqloop.evaluate(matches, "identity")):
+            other = copy.deepcopy(one)
+            self.assertTrue(one == one)
+            self.assertFalse(one == other)
+            self.assertEqual(len({one, other}), 2)
+            self.assertIn("equal only themselves", type(one).__doc__ or "")
 
     def test_the_difference_matrix(self) -> None:
         matrix = seqloop.differences(self.reference, self.query, standardise=False, arithmetic="float")

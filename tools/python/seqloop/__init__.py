@@ -62,11 +62,13 @@ __all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "MapInfo", "Matc
            "map_info", "match", "merge_maps", "settings"]
 
 
-@dataclasses.dataclass(frozen=True)
+# Of arrays there is no one answer to whether they are equal, and no hash.
+@dataclasses.dataclass(frozen=True, eq=False)
 class Matches:
     """The answers to a drive, in the order of its frames: the columns of `seqloop match`, [M] each.
 
-    A frame about which nothing is known has no row.
+    A frame about which nothing is known has no row. Matches equal only themselves: compare their columns, with
+    numpy.array_equal(a.match, b.match).
     """
 
     query: Integers
@@ -96,9 +98,12 @@ class Matches:
         return len(self.query)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Measures:
-    """How good answers are: the keys of `seqloop eval --json`. Shares are 0 to 1, NaN where not defined."""
+    """How good answers are: the keys of `seqloop eval --json`. Shares are 0 to 1, NaN where not defined.
+
+    Measures equal only themselves, because NaN and a curve's array equal nothing: compare what they hold.
+    """
 
     frames: int
     """Queries that have a truth."""
