@@ -3,6 +3,7 @@
 
 Wants PYTHONPATH, and in SEQLOOP_BINARY and SEQLOOP_STREET_BINARY the programs.
 """
+import ast
 import copy
 import csv
 import json
@@ -85,6 +86,34 @@ class Imports(unittest.TestCase):
         for word in ("PlaceMap", "Describer", "describe_drive", "float32 [D]", "unit length", "match(reference",
                      "SetupError", "settings()"):
             self.assertIn(word, shown)
+
+    def test_help_shows_the_arguments_that_the_types_have(self) -> None:
+        from seqloop import _vision
+        calls = []
+        for module in (seqloop._core, _vision):
+            stub = module.__name__.split(".")[1] + ".pyi"
+            for node in ast.parse(pathlib.Path(module.__file__).with_name(stub).read_text()).body:
+                calls += [(module, node)]
+                if isinstance(node, ast.ClassDef):
+                    calls += [(getattr(module, node.name), member) for member in node.body]
+        checked = 0
+        for owner, typed in calls:
+            name = getattr(typed, "name", "")
+            if not isinstance(typed, ast.FunctionDef) or isinstance(getattr(owner, name), property):
+                continue
+            first = getattr(owner, name).__doc__.splitlines()[0]
+            shown, known = ast.parse(f"def {first}: ...").body[0].args, typed.args
+            if shown.vararg:  # takes anything: __exit__
+                continue
+            with self.subTest(first):
+                self.assertEqual([each.arg for each in shown.args], [each.arg for each in known.args])
+                self.assertLessEqual({each.arg for each in shown.kwonlyargs}, {each.arg for each in known.kwonlyargs})
+                self.assertEqual(shown.kwarg is None, known.kwarg is None)
+            checked += 1
+        self.assertGreater(checked, 20)
+        shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop.Detector)"], check=True,
+                               capture_output=True, text=True).stdout
+        self.assertIn("step(self: seqloop._core.Detector, descriptor: Optional[numpy.ndarray], time_s: Opt", shown)
 
     def test_no_other_name_is_known(self) -> None:
         with self.assertRaisesRegex(AttributeError, "nothing"):

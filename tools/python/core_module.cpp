@@ -180,9 +180,6 @@ PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
   using seqloop::python::Map;
   using seqloop::python::Stepper;
-  // What the stub says in types is not said again in docstrings.
-  py::options options;
-  options.disable_function_signatures();
   module.doc() = "Matching, without pictures. Use it through the package seqloop.";
   seqloop::python::check_numpy();
   const auto error = py::module_::import("seqloop._errors").attr("SetupError");

@@ -114,8 +114,6 @@ class PictureDescriber {
 PYBIND11_MODULE(_vision, module) {
   namespace py = pybind11;
   using seqloop::python::PictureDescriber;
-  py::options options;
-  options.disable_function_signatures();
   module.doc() = "Describing pictures. Use it through the package seqloop.";
   seqloop::python::translate_faults(py::module_::import("seqloop._errors").attr("SetupError"));
   py::class_<PictureDescriber>(
