@@ -9,6 +9,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -114,6 +115,9 @@ class Imports(unittest.TestCase):
         shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop.Detector)"], check=True,
                                capture_output=True, text=True).stdout
         self.assertIn("step(self: seqloop._core.Detector, descriptor: Optional[numpy.ndarray], time_s: Opt", shown)
+
+    def test_the_version_is_the_programs(self) -> None:
+        self.assertRegex(program("--version").stdout, rf"^seqloop {re.escape(seqloop.__version__)} \(")
 
     def test_no_other_name_is_known(self) -> None:
         with self.assertRaisesRegex(AttributeError, "nothing"):

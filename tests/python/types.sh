@@ -27,7 +27,7 @@ with seqloop.PlaceMap.open("map.seqloop", describer.size, describer=describer.fi
     print(session.upper(), None if frame is None else frame + 1, lasting.saved + 1)
     seqloop.Detector(lasting).step(drive[0], time_s=1.5)
 print(seqloop.map_info("map.seqloop").sessions[0].began_ns + seqloop.merge_maps(["a", "b"], "c")[1])
-print(measures.recall.hex(), seqloop.differences(drive, drive).shape)
+print(seqloop.__version__.upper(), measures.recall.hex(), seqloop.differences(drive, drive).shape)
 END
 cat >"$work/bad.py" <<'END'
 import numpy

@@ -181,6 +181,7 @@ PYBIND11_MODULE(_core, module) {
   using seqloop::python::Map;
   using seqloop::python::Stepper;
   module.doc() = "Matching, without pictures. Use it through the package seqloop.";
+  module.attr("__version__") = SEQLOOP_VERSION;
   seqloop::python::check_numpy();
   const auto error = py::module_::import("seqloop._errors").attr("SetupError");
   seqloop::python::translate_faults(error);

@@ -45,7 +45,7 @@ import numpy
 import numpy.typing
 
 from . import _core
-from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work
+from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work, __version__
 from ._errors import SetupError
 from ._types import Gate, Setting
 
@@ -58,8 +58,8 @@ Integers = numpy.typing.NDArray[numpy.int64]
 MapPath = typing.Union[str, "os.PathLike[str]"]
 
 __all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "MapInfo", "Match", "Matches", "Measures",
-           "PlaceMap", "Report", "Session", "Setting", "SetupError", "Work", "check_map", "differences", "evaluate",
-           "map_info", "match", "merge_maps", "settings"]
+           "PlaceMap", "Report", "Session", "Setting", "SetupError", "Work", "__version__", "check_map", "differences",
+           "evaluate", "map_info", "match", "merge_maps", "settings"]
 
 
 # Of arrays there is no one answer to whether they are equal, and no hash.

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ._types import Gate, Setting
 
+__version__: str
 
 class Match:
     @property
