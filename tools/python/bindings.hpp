@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "program/options/options.hpp"
@@ -81,6 +83,15 @@ template <class Value>
 [[nodiscard]] pybind11::array_t<Value> as_array(const std::vector<Value>& values,
                                                 std::vector<pybind11::ssize_t> shape) {
   return pybind11::array_t<Value>(std::move(shape), values.data());
+}
+
+/// A call during which its object lives on: Python lets go of what a daemon thread uses when the
+/// program ends.
+template <class Self, class Result, class... Arguments>
+[[nodiscard]] auto outliving(Result (Self::*call)(Arguments...)) {
+  return [call](const std::shared_ptr<Self>& self, Arguments... arguments) {
+    return ((*self).*call)(std::forward<Arguments>(arguments)...);
+  };
 }
 
 /// Lets a long call end by Control-C: for code that runs without the interpreter's lock.

@@ -7,9 +7,11 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python/bindings.hpp"
@@ -34,12 +36,12 @@ constexpr double most_seconds = 9.2e9;
 
 class Stepper {
  public:
-  explicit Stepper(Map& map) : map_(&map) {
+  explicit Stepper(std::shared_ptr<Map> map) : map_(std::move(map)) {
     const Unlocked unlocked;
-    const std::scoped_lock lock(map.mutex());
-    map.claim();
-    detector_.emplace(map.config(), map.places());
-    map.begin();
+    const std::scoped_lock lock(map_->mutex());
+    map_->claim();
+    detector_.emplace(map_->config(), map_->places());
+    map_->begin();
   }
 
   Report step(const std::optional<Given>& descriptor, std::optional<double> time_s) {
@@ -153,7 +155,7 @@ class Stepper {
                       "divide it by numpy.linalg.norm(descriptor)"});
   }
 
-  Map* map_;
+  std::shared_ptr<Map> map_;
   std::mutex mutex_;
   std::optional<Detector> detector_;  // always there
   bool stepped_ = false;
@@ -179,6 +181,7 @@ void check_numpy() {
 PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
   using seqloop::python::Map;
+  using seqloop::python::outliving;
   using seqloop::python::Stepper;
   module.doc() = "Matching, without pictures. Use it through the package seqloop.";
   module.attr("__version__") = SEQLOOP_VERSION;
@@ -187,13 +190,14 @@ PYBIND11_MODULE(_core, module) {
   seqloop::python::translate_faults(error);
   seqloop::python::add_reports(module);
 
-  py::class_<Map>(module, "PlaceMap",
-                  "The places of a drive. Room for all of them is taken here, once.\n\n"
-                  "max_places: most that it can hold; descriptor_size: D, values in a descriptor.\n"
-                  "close_loops: False: add an earlier drive, and localise in it. True: it begins\n"
-                  "empty and takes its places from the drive that the detector steps through.\n"
-                  "settings: as seqloop.settings() lists them.\n"
-                  "Errors: SetupError, a ValueError with every fault at once.")
+  py::class_<Map, std::shared_ptr<Map>>(
+      module, "PlaceMap",
+      "The places of a drive. Room for all of them is taken here, once.\n\n"
+      "max_places: most that it can hold; descriptor_size: D, values in a descriptor.\n"
+      "close_loops: False: add an earlier drive, and localise in it. True: it begins\n"
+      "empty and takes its places from the drive that the detector steps through.\n"
+      "settings: as seqloop.settings() lists them.\n"
+      "Errors: SetupError, a ValueError with every fault at once.")
       .def(py::init<std::int64_t, std::int64_t, bool, const py::kwargs&>(), py::arg("max_places"),
            py::arg("descriptor_size"), py::arg("close_loops") = false)
       .def_static(
@@ -236,7 +240,7 @@ PYBIND11_MODULE(_core, module) {
            "lost. A map in memory alone stays as it is.")
       .def("__enter__", [](const py::object& map) { return map; })
       .def("__exit__", [](Map& map, const py::args& /*why*/) { map.close(); })
-      .def("add_drive", &Map::add_drive, py::arg("descriptors"),
+      .def("add_drive", outliving(&Map::add_drive), py::arg("descriptors"),
            "Takes in the drive to localise in, whole: descriptors [N, D], floating point.\n\n"
            "Rows are brought to unit length; a blank row, all zeros, shows what the one before\n"
            "it showed. A map holds one drive. Errors: SetupError.")
@@ -247,13 +251,15 @@ PYBIND11_MODULE(_core, module) {
           "descriptor_size", [](Map& map) { return map.places().descriptor_size(); },
           "D, values in a descriptor.");
 
-  py::class_<Stepper>(module, "Detector",
-                      "Answers, frame by frame, whether the robot has been here before.\n\n"
-                      "map: keeps it alive. To localise: filled; several detectors may share it,\n"
-                      "one a thread. To close loops: empty, and this detector's alone.\n"
-                      "Errors: SetupError.")
-      .def(py::init<Map&>(), py::arg("map"), py::keep_alive<1, 2>())
-      .def("step", &Stepper::step, py::arg("descriptor").none(true), py::arg("time_s") = py::none(),
+  py::class_<Stepper, std::shared_ptr<Stepper>>(
+      module, "Detector",
+      "Answers, frame by frame, whether the robot has been here before.\n\n"
+      "map: keeps it alive. To localise: filled; several detectors may share it,\n"
+      "one a thread. To close loops: empty, and this detector's alone.\n"
+      "Errors: SetupError.")
+      .def(py::init<std::shared_ptr<Map>>(), py::arg("map"))
+      .def("step", outliving(&Stepper::step), py::arg("descriptor").none(true),
+           py::arg("time_s") = py::none(),
            "Takes the next frame, and answers each frame whose answer is due.\n\n"
            "descriptor: float32 [D] in C order, of unit length; read where it lies, without a\n"
            "copy and without the interpreter's lock. None: the frame could not be read. NaN,\n"
@@ -261,13 +267,13 @@ PYBIND11_MODULE(_core, module) {
            "time_s: when it was taken, seconds; a map in a file keeps it. None: ten frames a "
            "second.\n"
            "Errors: SetupError for another shape, type or length; then nothing has changed.")
-      .def("skip", &Stepper::skip, py::arg("frames"),
+      .def("skip", outliving(&Stepper::skip), py::arg("frames"),
            "Takes note of frames that never came: the camera lost them, or they were dropped.")
-      .def("finish", &Stepper::finish,
+      .def("finish", outliving(&Stepper::finish),
            "The recording is over: answers every frame that still waits.\n\n"
            "A map in a file has all of the drive then. OSError: not all could be saved; the same\n"
            "call tries again, and gives the same answers.")
-      .def("newest_column", &Stepper::newest_column,
+      .def("newest_column", outliving(&Stepper::newest_column),
            "The newest frame's column of the difference matrix, float32 [N]: NaN where nothing\n"
            "was computed, which is nearly everywhere unless all rows are candidates\n"
            "(method=\"seqcnnslam\"). Errors: SetupError before the first step.");

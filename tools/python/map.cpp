@@ -65,7 +65,7 @@ Map::Chosen Map::in_memory(std::int64_t places, std::int64_t descriptor_size, bo
   return {config, {size_of(places), size_of(descriptor_size)}};
 }
 
-std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t descriptor_size,
+std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t descriptor_size,
                                std::optional<std::int64_t> places, const std::string& describer,
                                const py::kwargs& given) {
   constexpr std::int64_t usual_drive = 20'000;
@@ -98,7 +98,7 @@ std::unique_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
     chosen.capacity.places = drive;
   }
   suit_slice(chosen.config, matcher, chosen.capacity.places);
-  std::unique_ptr<Map> map(new Map(std::move(chosen)));
+  std::shared_ptr<Map> map(new Map(std::move(chosen)));
   map->file_->load(map->map_);
   return map;
 }

@@ -27,7 +27,7 @@ class Map {
   /// In a file. @param places how many there is room for; none: for what it has, and 20,000 more
   /// @param settings also those of maps in files
   /// Throws SetupError, also where this build has no maps in files.
-  [[nodiscard]] static std::unique_ptr<Map> open(const std::filesystem::path& file,
+  [[nodiscard]] static std::shared_ptr<Map> open(const std::filesystem::path& file,
                                                  std::int64_t descriptor_size,
                                                  std::optional<std::int64_t> places,
                                                  const std::string& describer,

@@ -113,10 +113,11 @@ class PictureDescriber {
 
 PYBIND11_MODULE(_vision, module) {
   namespace py = pybind11;
+  using seqloop::python::outliving;
   using seqloop::python::PictureDescriber;
   module.doc() = "Describing pictures. Use it through the package seqloop.";
   seqloop::python::translate_faults(py::module_::import("seqloop._errors").attr("SetupError"));
-  py::class_<PictureDescriber>(
+  py::class_<PictureDescriber, std::shared_ptr<PictureDescriber>>(
       module, "Describer",
       "Turns pictures into descriptors: by what is built in or, with settings, by a model that\n"
       "OpenCV reads (model=, layer=, input_size=, mean=, scale=, swap_rb=), by SeqSLAM's patches\n"
@@ -132,12 +133,12 @@ PYBIND11_MODULE(_vision, module) {
       .def_property_readonly("fingerprint", &PictureDescriber::fingerprint,
                              "What a map in a file remembers of how it was described: all that\n"
                              "makes descriptors differ. For PlaceMap.open.")
-      .def("describe", &PictureDescriber::describe, py::arg("picture"),
+      .def("describe", outliving(&PictureDescriber::describe), py::arg("picture"),
            "The descriptor of one picture: float32 [D], of unit length, or zeros where the\n"
            "picture has no feature; patches are 0 to 255 instead.\n\n"
            "picture: uint8 [H, W], grey, or [H, W, 3], blue first as OpenCV has it; rows may be\n"
            "padded. Read where it lies, without the interpreter's lock. Errors: SetupError.")
-      .def("describe_drive", &PictureDescriber::describe_drive, py::arg("source"),
+      .def("describe_drive", outliving(&PictureDescriber::describe_drive), py::arg("source"),
            py::arg("frames") = 0,
            "The descriptors of a drive, float32 [N, D], the same as `seqloop describe` writes.\n\n"
            "source: a folder of pictures, or a video; frames: stop after so many, 0: all.\n"
