@@ -83,13 +83,19 @@ cv::Mat sample(const std::vector<cv::Mat>& pictures) {
 }
 
 /// @return [words, 32] bytes: each bit as most of the word's features have it
-cv::Mat learn_words(const cv::Mat& values, int words) {
-  constexpr int rounds = 20;
-  const cv::TermCriteria until(cv::TermCriteria::COUNT, rounds, 0.0);
+cv::Mat learn_words(const cv::Mat& values, int words, const std::function<void()>& between) {
+  constexpr int rounds = 19;
+  // No fewer are done in one call: features go to their centres, and centres among their features.
+  // Going on from labels begins with the latter once more, which changes nothing.
+  const cv::TermCriteria one(cv::TermCriteria::COUNT, 2, 0.0);
   const FixedSeed fixed;
   cv::Mat labels;
   cv::Mat centres;
-  cv::kmeans(values, words, labels, until, 1, cv::KMEANS_PP_CENTERS, centres);
+  for (int round = 0; round < rounds; ++round) {
+    if (between) between();
+    const int start = round == 0 ? cv::KMEANS_PP_CENTERS : cv::KMEANS_USE_INITIAL_LABELS;
+    cv::kmeans(values, words, labels, one, 1, start, centres);
+  }
   cv::Mat vocabulary = cv::Mat::zeros(words, feature_bytes, CV_8U);
   for (int word = 0; word < words; ++word)
     for (int bit = 0; bit < bits; ++bit)
@@ -102,10 +108,14 @@ cv::Mat learn_words(const cv::Mat& values, int words) {
 
 class BagOfWords::Impl {
  public:
-  Impl(std::span<FrameSource* const> training, std::size_t words) : weights_(words) {
+  Impl(std::span<FrameSource* const> training, std::size_t words,
+       const std::function<void()>& between)
+      : weights_(words) {
     std::vector<cv::Mat> pictures;
-    const TrainingCount count = for_each_picture(
-        training, [&](const Image& image) { pictures.push_back(features_.find(image).clone()); });
+    const TrainingCount count = for_each_picture(training, [&](const Image& image) {
+      if (between) between();
+      pictures.push_back(features_.find(image).clone());
+    });
     const cv::Mat values = sample(pictures);
     if (words == 0 || words > static_cast<std::size_t>(values.rows)) {
       throw SetupError(
@@ -116,7 +126,7 @@ class BagOfWords::Impl {
                 "larger pictures or more of them"});
     }
     try {
-      vocabulary_ = learn_words(values, static_cast<int>(words));
+      vocabulary_ = learn_words(values, static_cast<int>(words), between);
       weigh(pictures);
     } catch (const cv::Exception& error) {
       throw SetupError(Fault{"words", "OpenCV cannot learn them (" + one_line(error.err) + ")"});
@@ -171,8 +181,9 @@ class BagOfWords::Impl {
   std::string fault_;
 };
 
-BagOfWords::BagOfWords(std::span<FrameSource* const> training, std::size_t words)
-    : impl_(std::make_unique<Impl>(training, words)) {}
+BagOfWords::BagOfWords(std::span<FrameSource* const> training, std::size_t words,
+                       const std::function<void()>& between)
+    : impl_(std::make_unique<Impl>(training, words, between)) {}
 
 BagOfWords::~BagOfWords() = default;
 

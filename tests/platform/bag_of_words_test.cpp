@@ -132,6 +132,17 @@ TEST(BagOfWords, APictureWithoutAFeatureIsBlank) {
 }
 
 // Bad input: drives without enough to learn from.
+TEST(BagOfWords, StopsLearningWhenItIsToldTo) {
+  SyntheticDrive source(drive(1, 6));
+  const std::array<FrameSource*, 1> training{&source};
+  int calls = 0;
+  const auto at_the_tenth = [&] {
+    if (++calls == 10) throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(BagOfWords(training, 50, at_the_tenth), std::runtime_error);
+  EXPECT_EQ(calls, 10) << "six pictures, and rounds";
+}
+
 TEST(BagOfWords, RefusesWhatItCannotLearnFrom) {
   using test::says;
   const auto fault = [](const std::vector<cv::Mat>& pictures, std::size_t words) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/oracle.hpp"
+#include "platform/pictures.hpp"
 #include "program/program.hpp"
 #include "seqloop/files/npy_file.hpp"
 
@@ -139,12 +140,12 @@ TEST_F(Live, WaitsForEachFramesTime) {
 TEST_F(Live, AnInterruptedRunEndsInOrder) {
   write_drive("good.npy", 60);
   for (const std::string signal : {"INT", "TERM", "HUP"}) {
-    // Whoever runs the tests may have signals ignored, and the program respects that. Its partial
-    // output shows that it has begun.
+    // Whoever runs the tests may have signals ignored, and the program respects that. The first
+    // line in its partial output shows that it has begun.
     std::filesystem::remove(file("r.jsonl"));
     folder_.write("stop.sh",
                   "env --default-signal=INT,TERM,HUP \"$@\" &\n"
-                  "until ls .r.jsonl.partial-* >/dev/null 2>&1; do sleep 0.1; done\n"
+                  "until grep -qs newest .r.jsonl.partial-*; do sleep 0.1; done\n"
                   "kill -" +
                       signal + " $!; wait $!\n");
     const std::string command =
@@ -156,6 +157,38 @@ TEST_F(Live, AnInterruptedRunEndsInOrder) {
     EXPECT_TRUE(exists("r.jsonl"));
     EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
   }
+}
+
+TEST_F(Live, InterruptedBeforeItsFirstFrameItKeepsWhatWasThere) {
+  std::filesystem::create_directory(file("drive"));
+  folder_.write("drive/0.png", test::encoded(test::textured(160, 120, 1), ".png"));
+  for (int i = 1; i < 20'000; ++i) {
+    std::filesystem::create_hard_link(file("drive/0.png"),
+                                      file("drive/" + std::to_string(i) + ".png"));
+  }
+  folder_.write("r.jsonl", "old");
+  folder_.write("stop.sh",
+                "env --default-signal=INT \"$@\" 2>stderr.txt &\n"
+                "until grep -qs learning stderr.txt; do sleep 0.01; done\n"
+                "kill -INT $!; wait $!\n");
+  for (const std::string verb : {"run", "describe"}) {
+    std::filesystem::remove(file("stderr.txt"));
+    const std::string command =
+        "cd '" + folder_.path().string() + "' && sh stop.sh '" SEQLOOP_BINARY "' " + verb +
+        " --source drive --descriptor words --training drive --out r.jsonl 2>err.txt";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    const std::string said = test::read_all(file("stderr.txt"));
+    EXPECT_NE(said.find("interrupted: nothing has been written"), std::string::npos) << said;
+    EXPECT_EQ(test::read_all(file("r.jsonl")), "old");
+    EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
+  }
+}
+
+TEST_F(Live, WarmsUpAtOnceHoweverWideItIsSet) {
+  write_drive("q.npy", 60);
+  const test::Outcome outcome =
+      run("run --source q.npy --reference q.npy --ds 5 --rwindow 1000000000 --out r.jsonl");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
 TEST_F(Live, StopsAfterAsManyFramesAsAskedFor) {

@@ -8,6 +8,7 @@
 #include "program/drives/drives.hpp"
 #include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
+#include "program/process/interruption.hpp"
 #include "program/process/say.hpp"
 #include "seqloop/opencv/bag_of_words.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -110,7 +111,8 @@ std::unique_ptr<Describer> make(const DriveSettings& settings,
     return learn_removal(std::move(net), training, *settings.remove_components);
   if (net) return net;
   if (kind == "gradients") return opencv::make_builtin_describer();
-  return std::make_unique<opencv::BagOfWords>(training, settings.words.value_or(usual_words));
+  return std::make_unique<opencv::BagOfWords>(training, settings.words.value_or(usual_words),
+                                              stop_if_interrupted);
 }
 
 }  // namespace

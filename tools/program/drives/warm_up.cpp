@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "program/process/interruption.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/turbojpeg/encode_jpeg.hpp"
@@ -40,7 +41,11 @@ std::vector<std::uint8_t> sent_as(RawFormat format, int width, int height) {
   return turbojpeg::encode_jpeg({pixels.data(), width, height, row, PixelFormat::bgr8}, quality);
 }
 
-void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::mt19937& random) {
+void match_noise(MatcherConfig config, std::size_t descriptor_size, std::mt19937& random) {
+  // However wide they are set, the code is the same, and each row costs a frame here.
+  const MatcherConfig usual;
+  config.exclude = std::min(config.exclude, usual.exclude);
+  config.rwindow = std::min(config.rwindow, usual.rwindow);
   const std::size_t window = config.sequence_length + 1;
   const bool closing = config.use == Use::close_loops;
   const std::size_t places = (closing ? config.exclude : 0) + 3 * window + config.rwindow;
@@ -54,11 +59,11 @@ void match_noise(const MatcherConfig& config, std::size_t descriptor_size, std::
   };
   PlaceMap map(config, {places, size});
   if (!closing) {
-    while (map.add(next())) {
+    while (!interrupted() && map.add(next())) {
     }
   }
   Detector detector(config, map);
-  for (std::size_t frame = 0; frame < places; ++frame) {
+  for (std::size_t frame = 0; frame < places && !interrupted(); ++frame) {
     static_cast<void>(detector.step(next()));
     if (frame == places / 2) detector.skip(1);
   }

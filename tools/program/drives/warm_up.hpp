@@ -11,7 +11,8 @@ namespace seqloop::program {
 
 /// Takes describer and matcher through everything that a frame will take them through, so that code
 /// is in memory and libraries have made their buffers before the first frame counts. The matcher is
-/// a small one of the same configuration; the real one learns nothing of it.
+/// a small one of the same configuration; the real one learns nothing of it. Ends early when the
+/// program was asked to stop.
 /// @param describer null when the drive was described before
 void warm_up(Describer* describer, const MatcherConfig& config, std::size_t descriptor_size);
 

@@ -93,6 +93,12 @@ std::unique_ptr<Serving> open_serving(const RunSettings& settings, const RunSetu
                                    setup.map ? setup.map->pictures() : nullptr);
 }
 
+/// Ends a run that was asked to stop before its first frame: it has nothing to put into outputs.
+void stop_before_the_first_frame(LastingMap* map) {
+  if (interrupted() && map != nullptr) map->discard();
+  stop_if_interrupted();
+}
+
 /// Does what people wish, before the next frame. @return whether the run goes on
 bool heed(const Wishes& wishes, Detector& detector, Clock& clock) {
   constexpr auto pause = std::chrono::milliseconds(20);
@@ -108,6 +114,7 @@ void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
   RunSetup setup = set_up(settings, std::move(faults), clock);
+  stop_if_interrupted();
   if (!settings.pictures.empty()) make_folder(settings.pictures);
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
@@ -172,6 +179,7 @@ void run(const RunSettings& settings, Faults faults) {
   start_playing(setup, settings, clock);
   Pipeline pipeline(setup.source(), setup.describer.get(), detector, clock, setup.descriptor_size);
   setup.out->heed(interrupted);
+  stop_before_the_first_frame(setup.map.get());
   const live::ThreadCounters warm = live::thread_counters();
 
   SourceNumbers numbers = with_room(
