@@ -68,8 +68,9 @@ std::optional<double> spacing_of(const PlaceMap& map) {
 
 /// Steps whose frames are asked for: those that wait, and the newest that are no candidates yet.
 std::size_t steps_kept(const MatcherConfig& config) {
-  return std::max(config.patience, config.exclude) + 2 * config.sequence_length +
-         config.frames_at_once + StopRun::reach + 2;
+  const std::size_t newest = config.use == Use::close_loops ? config.exclude : 0;
+  return std::max(config.patience, newest) + 2 * config.sequence_length + config.frames_at_once +
+         StopRun::reach + 2;
 }
 
 /// Frames whose steps are asked for: those that wait, and as many as may be skipped at once.

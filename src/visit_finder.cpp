@@ -9,7 +9,7 @@ namespace {
 
 /// The usual settings, which take any drive at a cost that does not grow with the map. How
 /// descriptors are compared is the map's.
-MatcherConfig to_close_loops(const MatcherConfig& config) {
+MatcherConfig to_close_loops(const MatcherConfig& config, std::size_t places) {
   MatcherConfig closing;
   closing.use = Use::close_loops;
   closing.difference = config.difference;
@@ -17,7 +17,8 @@ MatcherConfig to_close_loops(const MatcherConfig& config) {
   closing.standardisation = config.standardisation;
   closing.keyframes = has_keyframes(config);
   closing.blank_is_unreadable = config.blank_is_unreadable;
-  closing.exclude = config.exclude;
+  // Each step is a place here, so that none is further back, and what was asked for takes memory.
+  closing.exclude = std::min(config.exclude, places);
   return closing;
 }
 
@@ -32,7 +33,8 @@ PlaceMap beside(const MatcherConfig& config, const PlaceMap& map, std::size_t pl
 }  // namespace
 
 VisitFinder::VisitFinder(const MatcherConfig& config, const PlaceMap& map, std::size_t places)
-    : map_(beside(to_close_loops(config), map, places)), detector_(to_close_loops(config), map_) {}
+    : map_(beside(to_close_loops(config, places), map, places)),
+      detector_(to_close_loops(config, places), map_) {}
 
 void VisitFinder::take(std::span<const float> descriptor) noexcept {
   if (map_.size() < map_.capacity()) note(detector_.step(descriptor).answers);

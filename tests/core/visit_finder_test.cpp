@@ -57,6 +57,18 @@ TEST(VisitFinder, LinksEachLapToTheFirst) {
   EXPECT_GE(linked(map, 2 * lap, 2 * lap), lap - 10);
 }
 
+/// Whatever is asked for, it takes no more memory, and changes nothing beyond the drive's length.
+TEST(VisitFinder, AnyNumberOfNewestFramesMayBeNoPlaces) {
+  MatcherConfig config;
+  config.exclude = 1'000'000'000;
+  const PlaceMap map = map_of(laps(3), config, 3 * lap);
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    EXPECT_EQ(map.first_visit(row), map.order().number(row));
+  }
+  const Capacity capacity{map.capacity(), map.descriptor_size()};
+  EXPECT_EQ(Detector::bytes_needed(config, capacity), Detector::bytes_needed({}, capacity));
+}
+
 TEST(VisitFinder, LinksNothingWhereNothingComesTwice) {
   const PlaceMap map = map_of(test::way(1, 3 * lap, 0.3F, 1), {}, 3 * lap);
   EXPECT_EQ(linked(map, lap, lap), 0U);
