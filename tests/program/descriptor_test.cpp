@@ -101,6 +101,29 @@ TEST_F(Descriptor, RunLearnsToo) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
+TEST_F(Descriptor, NothingIsLearnedWhereTheRestIsWrong) {
+  const std::string words = " --descriptor words --words 0 --training ";
+  for (const std::string verb : {"describe", "run"}) {
+    SCOPED_TRACE(verb);
+    const std::string all = verb + " --source none --out nowhere/out";
+    for (const auto& [training, wrong] :
+         {std::pair{"drive", "nowhere/out: "}, {"missing", "missing: "}}) {
+      const test::Outcome outcome = run(all + words + training);
+      EXPECT_EQ(outcome.exit_code, 2);
+      EXPECT_EQ(outcome.err.find("learn"), std::string::npos) << outcome.err;
+      for (const std::string said : {"none: does not exist", "nowhere/out: its folder", wrong}) {
+        const std::size_t first = outcome.err.find(said);
+        EXPECT_NE(first, std::string::npos) << said << " is not in:\n" << outcome.err;
+        EXPECT_EQ(outcome.err.find(said, first + 1), std::string::npos) << "twice:\n"
+                                                                        << outcome.err;
+      }
+    }
+  }
+  const test::Outcome outcome = run("describe --out d.npy");
+  EXPECT_NE(outcome.err.find("source: not given"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(".npy file"), std::string::npos) << "it refuses these";
+}
+
 TEST_F(Descriptor, BadInput) {
   expect_refused("--descriptor patchs", {"did you mean 'patches'?"});
   expect_refused("--descriptor fabmap", {"'fabmap'", "gradients, patches or words"});
@@ -114,7 +137,8 @@ TEST_F(Descriptor, BadInput) {
   expect_refused("--words 5", {"words: there is no vocabulary"});
   expect_refused("--descriptor patches --remove-components 3 --training drive",
                  {"remove-components: ", "patches have none"});
-  expect_refused("--descriptor words --words 1000000 --training drive", {"words: 1000000", "11"});
+  expect_refused("--descriptor words --words 20001 --training drive", {"20001 is more than 20000"});
+  expect_refused("--descriptor words --words 20000 --training drive", {"words: 20000", "11"});
   expect_refused("--descriptor words --words 0 --training drive", {"words: 0"});
   expect_refused("--remove-components 11 --training drive",
                  {"11 pictures that can be read and 1 that cannot", "fewer"});

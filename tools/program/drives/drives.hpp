@@ -46,6 +46,11 @@ void check_describer(const DriveSettings& settings, bool training_given);
 /// Throws SetupError.
 [[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings);
 
+/// The same, where more has been looked at. Learning takes long: where there are drives to learn
+/// from and faults already, nothing is learned. Adds its own faults. @return null: there are faults
+[[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings,
+                                                        Faults& faults);
+
 /// The same, learning from drives that are open, which are read to their ends.
 /// @param training instead of `settings.training`; may be empty where nothing learns
 [[nodiscard]] std::unique_ptr<Describer> open_describer(const DriveSettings& settings,

@@ -151,22 +151,39 @@ std::unique_ptr<Describer> open_describer(const DriveSettings& settings,
 
 std::unique_ptr<Describer> open_describer(const DriveSettings& settings) {
   Faults faults;
-  check(settings, !settings.training.empty(), faults);
+  std::unique_ptr<Describer> describer = open_describer(settings, faults);
+  refuse(std::move(faults));
+  return describer;
+}
+
+std::unique_ptr<Describer> open_describer(const DriveSettings& settings, Faults& faults) {
+  Faults own;
+  check(settings, !settings.training.empty(), own);
   std::vector<std::unique_ptr<FrameSource>> drives;
   std::vector<FrameSource*> training;
   for (const std::filesystem::path& path : settings.training) {
     if (is_described(path)) {
-      faults.push_back({"training", path.string() + " holds descriptors already",
-                        "give image folders or videos"});
+      own.push_back({"training", path.string() + " holds descriptors already",
+                     "give image folders or videos"});
       continue;
     }
-    collect(faults, [&] {
+    collect(own, [&] {
       training.push_back(drives.emplace_back(open_drive(path, "training", settings)).get());
     });
   }
-  if (faults.empty() && !training.empty()) say("learning from {} drives", training.size());
-  std::unique_ptr<Describer> describer = make(settings, training, std::move(faults));
-  for (std::size_t i = 0; i < drives.size(); ++i) tell_notes(settings.training[i], *drives[i]);
+  const bool learns = !settings.training.empty();
+  if (learns && own.empty() && faults.empty()) say("learning from {} drives", training.size());
+  std::unique_ptr<Describer> describer;
+  collect(faults, [&] {
+    if (learns && !faults.empty()) {
+      collect(own, [&] { static_cast<void>(open_net(settings)); });
+      return refuse(std::move(own));
+    }
+    describer = make(settings, training, std::move(own));
+  });
+  if (describer) {
+    for (std::size_t i = 0; i < drives.size(); ++i) tell_notes(settings.training[i], *drives[i]);
+  }
   return describer;
 }
 

@@ -104,14 +104,22 @@ void check_camera(const RunSettings& settings, Faults& faults) {
   }
 }
 
-void open_source(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
-                 Clock& clock, Faults& faults) {
-  if (!is_live(settings.source)) {
+/// What can be opened twice: before there is a describer, and for it.
+void open_recordings(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
+                     Faults& faults) {
+  const Describer* describer = setup.describer.get();
+  if (!settings.reference.empty()) {
     collect(faults, [&] {
-      setup.recording = open_drive(settings.source, "source", drive, setup.describer.get());
+      setup.reference = open_drive(settings.reference, "reference", drive, describer);
     });
-    return;
   }
+  if (is_live(settings.source)) return;
+  collect(faults,
+          [&] { setup.recording = open_drive(settings.source, "source", drive, describer); });
+}
+
+void open_live(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
+               Clock& clock, Faults& faults) {
   const bool topic = is_topic(settings.source);
   if (!settings.pictures.empty()) {
     faults.push_back({"pictures", "a camera cannot be looked at again",
@@ -169,15 +177,14 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);
   const bool given = !settings.reference.empty();
+  // Learning takes long: what is wrong with the rest is told before.
+  const bool learns = !drive.training.empty();
+  if (learns) open_recordings(setup, settings, drive, faults);
   if (pictures || (given && !is_described(settings.reference))) {
     suit_descriptor(drive, setup.config.difference, faults);
-    collect(faults, [&] { setup.describer = open_describer(drive); });
+    setup.describer = open_describer(drive, faults);
   }
-  if (given) {
-    collect(faults, [&] {
-      setup.reference = open_drive(settings.reference, "reference", drive, setup.describer.get());
-    });
-  }
+  if (setup.describer || !learns) open_recordings(setup, settings, drive, faults);
   const bool live_odometry = listens_to_odometry(settings.loops, is_live(settings.source));
   std::function<std::vector<ros::OdometryPose>()> odometry;
   if (settings.ros || live_odometry || is_topic(settings.source) || !settings.fleet.name.empty()) {
@@ -186,7 +193,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
       if (live_odometry) odometry = open_odometry(settings.loops.odometry, setup.ros);
     });
   }
-  open_source(setup, settings, drive, clock, faults);
+  if (is_live(settings.source)) open_live(setup, settings, drive, clock, faults);
   refuse(faults);
 
   const auto size_of = [&](const FrameSource* recording) {

@@ -33,21 +33,28 @@ void describe(const DescribeSettings& settings, Faults faults) {
   std::unique_ptr<Describer> describer;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<files::NpyWriter> out;
-  collect(faults, [&] { describer = open_describer(settings.drive); });
-  if (is_described(settings.source)) {
+  if (settings.source.empty()) {
+    faults.push_back({"source", "not given", "give an image folder, a video, a bag or a camera"});
+  } else if (is_described(settings.source)) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
-  } else if (!live) {
-    collect(faults, [&] {
-      source = open_drive(settings.source, "source", settings.drive, describer.get());
-    });
   }
-  if (settings.out.empty()) {
-    faults.push_back({"out", "not given", "--out D.npy"});
-  } else {
+  if (settings.out.empty()) faults.push_back({"out", "not given", "--out D.npy"});
+  const auto open = [&] {
+    if (!live && !settings.source.empty() && !is_described(settings.source)) {
+      collect(faults, [&] {
+        source = open_drive(settings.source, "source", settings.drive, describer.get());
+      });
+    }
     const std::size_t size = describer ? describer->size() : 1;
+    if (settings.out.empty()) return;
     collect(faults, [&] { out = std::make_unique<files::NpyWriter>(settings.out, size); });
-  }
+  };
+  // Learning takes long: what is wrong with the rest is told before.
+  const bool learns = !settings.drive.training.empty();
+  if (learns) open();
+  describer = open_describer(settings.drive, faults);
+  if (describer || !learns) open();
   refuse(std::move(faults));
   if (topic) {
     source =
