@@ -44,6 +44,53 @@ TEST(Truth, WithoutTheColumnTheAskedToleranceHolds) {
                  "t.csv:2"));
 }
 
+TEST(Truth, AnEmptyToleranceIsNone) {
+  const Truth truth = from_text("query,reference,tolerance\n1,10,\n2,20,0\n");
+  EXPECT_TRUE(truth.right(1, 12, 2));
+  EXPECT_FALSE(truth.right(1, 12, 1));
+  EXPECT_FALSE(truth.right(2, 21, 2));
+  EXPECT_FALSE(truth.has_own_tolerances());
+}
+
+std::string faults_of(const std::string& text) {
+  return test::setup_error([&] { (void)from_text(text); });
+}
+
+TEST(Truth, IsReadAsOthersWriteTables) {
+  const Truth truth =
+      from_text("\"\",\"query\", \"reference\" \n\"1\",\"4\",10\n\"a \"\"b\"\", c\",5,\"11\"\n");
+  EXPECT_TRUE(truth.right(4, 10, 0));
+  EXPECT_TRUE(truth.right(5, 11, 0));
+  EXPECT_EQ(from_text("query,reference,,\n4,10,,\n").frames(), 1U);
+  EXPECT_TRUE(test::says(faults_of("query,reference\n\"4,10\n"), "t.csv:2: a cell in quotes"));
+  EXPECT_TRUE(test::says(faults_of("query,reference\n\"4\"5,10\n"), "t.csv:2: a cell in quotes"));
+  EXPECT_TRUE(
+      test::says(faults_of("\"query\";\"reference\"\n4;10\n"), "separated by ';'; write commas"));
+  EXPECT_TRUE(test::says(faults_of("query\treference\n4\t1\n"), "by tabs; write commas"));
+}
+
+TEST(Truth, TellsAllThatIsWrongWithAFile) {
+  EXPECT_TRUE(test::says(faults_of("query,query,a,a\n1,2,3,4\n"), "'query' is there twice"));
+  EXPECT_TRUE(test::says(faults_of("query,query,a,a\n1,2,3,4\n"), "'a' is there twice"));
+  EXPECT_TRUE(test::says(faults_of("a,b\n1,2\n"), "'query'"));
+  EXPECT_TRUE(test::says(faults_of("a,b\n1,2\n"), "'reference'"));
+  EXPECT_TRUE(
+      test::says(faults_of("query,reference\n"), "t.csv: it has no rows; --truth no-revisit"));
+  std::string cells = "query,reference\n";
+  std::string lengths = cells;
+  for (int line = 2; line <= 9; ++line) {
+    cells += "1,x\n";
+    lengths += "1\n";
+  }
+  for (const std::string& text : {cells, lengths}) {
+    const std::string said = faults_of(text);
+    EXPECT_TRUE(test::says(said, "t.csv:2: "));
+    EXPECT_TRUE(test::says(said, "t.csv:6: "));
+    EXPECT_FALSE(test::says(said, "t.csv:7: "));
+    EXPECT_TRUE(test::says(said, "t.csv: and 3 more like these"));
+  }
+}
+
 TEST(Truth, ByPositionsOnAPlan) {
   const Positions reference = positions("frame,x,y\n0,0,0\n1,3,4\n2,30,0\n10,0,5\n");
   const Positions query = positions("y,x,frame\n0,0,5\n0,100,6\n-1.5,30,7\n");

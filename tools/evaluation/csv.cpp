@@ -7,20 +7,51 @@
 #include <charconv>
 #include <utility>
 
+#include "evaluation/line_faults.hpp"
 #include "files/text_file.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
 namespace {
 
-std::vector<std::string> cells(std::string_view line) {
+void trim(std::string_view& text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+}
+
+/// Takes a cell in quotes from the front of a line; a quote within it is there twice. None where it
+/// does not end.
+std::optional<std::string> take_quoted(std::string_view& line) {
+  std::string cell;
+  for (std::size_t at = 1; at < line.size(); ++at) {
+    if (line[at] == '"' && (at + 1 == line.size() || line[at + 1] != '"')) {
+      line.remove_prefix(at + 1);
+      return cell;
+    }
+    if (line[at] == '"') ++at;
+    cell += line[at];
+  }
+  return std::nullopt;
+}
+
+/// @param where for messages. Throws SetupError: a cell in quotes that does not end with them.
+std::vector<std::string> cells(std::string_view line, const std::string& where) {
   std::vector<std::string> found;
   while (true) {
+    trim(line);
+    std::optional<std::string> quoted;
+    if (line.starts_with('"')) {
+      quoted = take_quoted(line);
+      trim(line);
+      if (!quoted || !(line.empty() || line.front() == ',')) {
+        throw SetupError({where, "a cell in quotes does not end with one",
+                          "close it, and write a quote within it twice"});
+      }
+    }
     const std::size_t end = std::min(line.find(','), line.size());
     std::string_view cell = line.substr(0, end);
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-    found.emplace_back(cell);
+    trim(cell);
+    found.push_back(quoted ? *quoted : std::string(cell));
     if (end == line.size()) return found;
     line.remove_prefix(end + 1);
   }
@@ -36,26 +67,46 @@ bool parse(const std::string& cell, Number& value) {
 }  // namespace
 
 CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(name)) {
+  LineFaults faults(name_);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty()) continue;
-    std::vector<std::string> found = cells(line);
+    const std::string where = name_ + ":" + std::to_string(number);
     if (header_.empty()) {
-      header_ = std::move(found);
+      take_header(line, where);
       continue;
     }
-    if (found.size() != header_.size()) {
-      throw SetupError({name_ + ":" + std::to_string(number), std::to_string(found.size()) +
-                                                                  " cells under a header of " +
-                                                                  std::to_string(header_.size())});
-    }
-    lines_.push_back(std::move(found));
-    line_numbers_.push_back(number);
+    faults.collect([&] {
+      std::vector<std::string> found = cells(line, where);
+      if (found.size() != header_.size()) {
+        throw SetupError({where, std::to_string(found.size()) + " cells under a header of " +
+                                     std::to_string(header_.size())});
+      }
+      lines_.push_back(std::move(found));
+      line_numbers_.push_back(number);
+    });
   }
+  faults.refuse();
   if (header_.empty()) throw SetupError({name_, "empty: not even a header line"});
+}
+
+void CsvTable::take_header(std::string_view line, const std::string& where) {
+  for (const auto& [separator, shown] : {std::pair{';', "';'"}, {'\t', "tabs"}}) {
+    if (line.find(',') < line.size() || line.find(separator) == line.npos) continue;
+    throw SetupError({name_, "its cells are separated by " + std::string(shown),
+                      "write commas between them, and decimal points in numbers"});
+  }
+  header_ = cells(line, where);
+  Faults faults;
+  for (auto cell = header_.begin(); cell != header_.end(); ++cell) {
+    // Spreadsheets leave columns behind that have neither a name nor cells.
+    if (cell->empty() || std::find(header_.begin(), cell, *cell) == cell) continue;
+    faults.push_back({name_, "the column '" + *cell + "' is there twice", "remove one of them"});
+  }
+  if (!faults.empty()) throw SetupError(std::move(faults));
 }
 
 CsvTable CsvTable::read(const std::filesystem::path& file) {
@@ -75,6 +126,26 @@ std::optional<std::size_t> CsvTable::find(std::string_view header) const noexcep
 std::size_t CsvTable::column(std::string_view header) const {
   if (const std::optional<std::size_t> found = find(header)) return *found;
   throw SetupError({name_, "no column '" + std::string(header) + "' in its header line"});
+}
+
+std::vector<std::size_t> CsvTable::columns(const std::vector<std::string>& headers) const {
+  std::vector<std::size_t> found;
+  Faults faults;
+  for (const std::string& header : headers) {
+    try {
+      found.push_back(column(header));
+    } catch (const SetupError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw SetupError(std::move(faults));
+  return found;
+}
+
+void CsvTable::for_each_row(const std::function<void(std::size_t)>& read) const {
+  LineFaults faults(name_);
+  for (std::size_t row = 0; row < rows(); ++row) faults.collect([&] { read(row); });
+  faults.refuse();
 }
 
 std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {

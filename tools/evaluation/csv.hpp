@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,11 +11,11 @@
 
 namespace seqloop::evaluation {
 
-/// A file of comma-separated numbers under a header line.
+/// A file of comma-separated numbers under a header line; cells may stand in quotes.
 class CsvTable {
  public:
-  /// @param name the file, for messages. Throws SetupError: no header, a line with too few or too
-  /// many cells.
+  /// @param name the file, for messages. Throws SetupError: no header, one with a column twice or
+  /// without commas; a handful of the lines with too few or too many cells.
   CsvTable(std::string_view text, std::string name);
 
   /// Throws SetupError when the file cannot be read, and as above.
@@ -35,14 +36,24 @@ class CsvTable {
   /// The same. Throws SetupError: there is none.
   [[nodiscard]] std::size_t column(std::string_view header) const;
 
+  /// Likewise, of several. Throws SetupError with all that are missing.
+  [[nodiscard]] std::vector<std::size_t> columns(const std::vector<std::string>& headers) const;
+
+  /// Calls `read` for each row. Throws SetupError with a handful of what it throws.
+  void for_each_row(const std::function<void(std::size_t)>& read) const;
+
   /// Throw SetupError, with the line, for a cell that is no such number.
   [[nodiscard]] std::uint64_t whole(std::size_t row, std::size_t column) const;
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;  ///< nan and inf too
   [[nodiscard]] double number_within(std::size_t row, std::size_t column, double least,
                                      double most) const;
   [[nodiscard]] bool flag(std::size_t row, std::size_t column) const;  ///< 0 or 1
+  [[nodiscard]] bool empty(std::size_t row, std::size_t column) const {
+    return lines_[row][column].empty();
+  }
 
  private:
+  void take_header(std::string_view line, const std::string& where);
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view wanted) const;
 
   std::string name_;

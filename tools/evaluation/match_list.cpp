@@ -8,6 +8,7 @@
 #include <set>
 
 #include "evaluation/csv.hpp"
+#include "evaluation/line_faults.hpp"
 #include "files/text_file.hpp"
 #include "seqloop/fault.hpp"
 
@@ -30,20 +31,19 @@ std::string name_of(ThresholdOn threshold_on) {
 }
 
 std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) {
-  const std::size_t query = table.column("query");
-  const std::size_t match = table.column("match");
-  const std::size_t uncertainty = table.column(swept);
+  const std::vector<std::size_t> columns = table.columns({"query", "match", swept});
   const std::optional<std::size_t> probability = table.find("probability");
   const std::optional<std::size_t> accepted = table.find("accepted");
   std::vector<Answer> answers;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    Answer answer{table.whole(row, query), table.whole(row, match), table.number(row, uncertainty)};
+  table.for_each_row([&](std::size_t row) {
+    Answer answer{table.whole(row, columns[0]), table.whole(row, columns[1]),
+                  table.number(row, columns[2])};
     if (probability && !std::isnan(table.number(row, *probability))) {
       answer.probability = table.number_within(row, *probability, 0.0, 1.0);
     }
     if (accepted) answer.accepted = table.flag(row, *accepted);
     answers.push_back(answer);
-  }
+  });
   return answers;
 }
 
@@ -115,12 +115,15 @@ class Lines {
 std::vector<Answer> from_lines(std::string_view text, const std::string& name,
                                const std::string& swept) {
   Lines lines(name, swept);
+  LineFaults faults(name);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.find_first_not_of(" \t\r") != std::string_view::npos) lines.take(line, number);
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    faults.collect([&] { lines.take(line, number); });
   }
+  faults.refuse();
   return std::move(lines.answers);
 }
 

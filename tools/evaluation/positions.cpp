@@ -42,7 +42,7 @@ Positions Positions::from_csv(const CsvTable& table) {
   const std::size_t first = table.column(on_plan ? "x" : "latitude");
   const std::size_t second = table.column(on_plan ? "y" : "longitude");
   std::set<std::uint64_t> seen;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  table.for_each_row([&](std::size_t row) {
     const std::uint64_t number = table.whole(row, frame);
     if (!seen.insert(number).second) {
       throw SetupError({table.where(row), "frame " + std::to_string(number) + " is given twice"});
@@ -52,7 +52,7 @@ Positions Positions::from_csv(const CsvTable& table) {
                                       table.number_within(row, second, -farthest_m, farthest_m)}
                          : on_ball(table.number_within(row, first, -90.0, 90.0),
                                    table.number_within(row, second, -180.0, 360.0))});
-  }
+  });
   if (positions.places.empty()) throw SetupError({table.name(), "it has no rows"});
   return positions;
 }

@@ -63,18 +63,24 @@ Truth Truth::laps(std::uint64_t frames, std::uint64_t laps) {
 }
 
 Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
-  const std::size_t query = table.column("query");
-  const std::size_t reference = table.column("reference");
+  const std::vector<std::size_t> columns = table.columns({"query", "reference"});
+  const std::optional<std::size_t> tolerance = table.find("tolerance");
   Truth truth;
-  truth.own_tolerances_ = table.has("tolerance");
   truth.unlisted_ = unlisted;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::uint64_t place = table.whole(row, reference);
+  std::size_t own = 0;
+  table.for_each_row([&](std::size_t row) {
+    const std::uint64_t place = table.whole(row, columns[1]);
     Run run{place, place};
-    if (truth.own_tolerances_) run.tolerance = table.whole(row, table.column("tolerance"));
-    truth.places_[table.whole(row, query)].push_back(run);
+    if (tolerance && !table.empty(row, *tolerance)) {
+      run.tolerance = table.whole(row, *tolerance);
+      ++own;
+    }
+    truth.places_[table.whole(row, columns[0])].push_back(run);
+  });
+  truth.own_tolerances_ = own == table.rows();
+  if (truth.places_.empty()) {
+    throw SetupError({table.name(), "it has no rows", "--truth no-revisit if nothing comes back"});
   }
-  if (truth.places_.empty()) throw SetupError(Fault{"truth", "it has no rows"});
   return truth;
 }
 

@@ -32,9 +32,8 @@ class Truth {
   static Truth laps(std::uint64_t frames, std::uint64_t laps);
 
   /// Rows `query,reference`; several rows of one query are several right answers. A third column
-  /// `tolerance`, in frames, holds for its own row instead of the tolerance that `right` is asked
-  /// with.
-  /// Throws SetupError as CsvTable does, and without rows.
+  /// `tolerance`, in frames, holds for its own row, unless its cell is empty, instead of the
+  /// tolerance that `right` is asked with. Throws SetupError as CsvTable does, and without rows.
   static Truth from_csv(const CsvTable& table, Unlisted unlisted = Unlisted::wrong);
 
   /// A query frame shows every reference frame that was at most the radius away; one that was near

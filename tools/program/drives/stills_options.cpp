@@ -47,12 +47,11 @@ Interval parse_interval(std::string_view text) {
 
 std::vector<Interval> read_intervals(const std::filesystem::path& file) {
   const auto table = evaluation::CsvTable::read(file);
-  const std::size_t from = table.column("from_s");
-  const std::size_t to = table.column("to_s");
+  const std::vector<std::size_t> columns = table.columns({"from_s", "to_s"});
   std::vector<Interval> intervals;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    intervals.push_back({table.number(row, from), table.number(row, to)});
-  }
+  table.for_each_row([&](std::size_t row) {
+    intervals.push_back({table.number(row, columns[0]), table.number(row, columns[1])});
+  });
   return intervals;
 }
 
