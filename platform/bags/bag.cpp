@@ -15,8 +15,11 @@ bool is_bag(const std::filesystem::path& path) {
 
 std::unique_ptr<Bag> open_bag(const std::filesystem::path& path) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    throw SetupError(Fault{path.string(), "does not exist", "check the name"});
+  const bool there = std::filesystem::exists(path, error);
+  if (error)
+    throw SetupError(
+        Fault{path.string(), "cannot be read: " + error.message(), "check the permissions"});
+  if (!there) throw SetupError(Fault{path.string(), "does not exist", "check the name"});
   if (std::filesystem::is_directory(path, error)) {
     if (holds_bag(path)) return open_bag_folder(path);
     throw SetupError(Fault{path.string(), "holds no .mcap and no .db3 file", "name a bag"});

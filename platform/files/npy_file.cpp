@@ -23,8 +23,10 @@ std::uint64_t open_regular(const std::filesystem::path& path, std::ifstream& str
   const std::string name = path.string();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status))
-    throw SetupError(Fault{name, "does not exist", "check the name"});
+  using enum std::filesystem::file_type;
+  if (status.type() == none || status.type() == unknown)
+    throw SetupError(Fault{name, "cannot be read: " + error.message(), "check its permissions"});
+  if (status.type() == not_found) throw SetupError(Fault{name, "does not exist", "check the name"});
   if (std::filesystem::is_directory(status))
     throw SetupError(Fault{name, "is a folder, not a .npy file", "describe its pictures first"});
   if (!std::filesystem::is_regular_file(status))

@@ -10,7 +10,11 @@ namespace seqloop::files {
 std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   const std::string shown = path.string();
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
+  const bool there = std::filesystem::exists(path, error);
+  if (error) {
+    throw SetupError(Fault{shown, "cannot be read: " + error.message(), "check its permissions"});
+  }
+  if (!there) {
     throw SetupError(Fault{shown, "does not exist", "check the name"});
   }
   // A device or a pipe could go on for ever.

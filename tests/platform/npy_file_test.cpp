@@ -115,6 +115,14 @@ TEST(NpyFile, NamesWhatIsNoNpyFile) {
 }
 
 // Bad input: cut off or too long.
+TEST(NpyFile, SaysWhyAFileCannotBeLookedAt) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "round.npy";
+  std::filesystem::create_symlink(path, path);
+  const std::string said = setup_error([&] { static_cast<void>(read_npy(path)); });
+  EXPECT_TRUE(says(said, "cannot be read: Too many levels of symbolic links; check"));
+}
+
 TEST(NpyFile, ComparesLengths) {
   const std::string file = good_file();
   EXPECT_TRUE(says(fault_of(file.substr(0, 3)), "truncated inside its header"));

@@ -159,6 +159,24 @@ TEST_F(BadInput, EveryFaultAtOnce) {
   }
 }
 
+TEST_F(BadInput, FaultsOfInputsAreToldBesideThoseOfOutputs) {
+  folder_.write("poses.tum", "0 1 2\n");
+  expect_refused(
+      "run --source none --out no/r.jsonl --pictures good.npy/p --pose-graph no/g.g2o --odometry "
+      "poses.tum --map no/m.seqloop",
+      {"none: does not exist", "no/r.jsonl: its folder", "good.npy/p: ", "no/g.g2o: its folder",
+       "poses.tum: line 1 is no pose", "no/m.seqloop: its folder does not exist; create "});
+  expect_refused("run --source good.npy --out no/r.jsonl --map none.seqloop --read-only",
+                 {"no/r.jsonl: ", "none.seqloop: there is no such map"});
+  expect_refused("report none.jsonl --summary none.json --out no/p.html",
+                 {"none.jsonl: cannot be read: No such file or directory; name what `seqloop run",
+                  "none.json: cannot be read: No such file or directory; name what `seqloop run",
+                  "no/p.html: its folder"});
+  folder_.write("no.json", "{}");
+  expect_refused("report good.npy/ --summary no.json --out no/p.html",
+                 {"good.npy/: cannot be read: Not a directory", "no.json is not what", "give the"});
+}
+
 TEST_F(BadInput, OddAndSmallestSequenceLengthsWork) {
   for (const char* ds : {"1", "2", "3", "59"}) {
     const test::Outcome outcome =

@@ -111,6 +111,8 @@ TEST_F(MapVerb, MergePutsMapsBehindEachOther) {
   expect(0, "merge a c --out e", "c: 80 is added to the numbers of its places");
   (void)MapFile::open(file("other"), sqlite::MapForm{"int8", "words", 7, 7});
   const auto refused = expect_refused("merge a none other --out d", "none: there is no such map");
+  EXPECT_NE(expect_refused("merge a none --out a", "none: there is").err.find("a: there is such"),
+            std::string::npos);
   EXPECT_NE(refused.err.find("other: its places cannot be compared with those of a: they are int8, "
                              "of 7 values, described by 'words'; those are"),
             std::string::npos)

@@ -296,6 +296,9 @@ TEST_F(Serve, TellsWhatIsWrongBeforeAnyWork) {
   folder_.write("short", "abc\n");
   refused("--serve 127.0.0.1:0 --serve-token short", "holds no token");
   refused("--serve-token token", "nothing is served");
+  refused("--serve robot:80 --serve-token gone --map none/m.seqloop", "no IP address");
+  refused("--serve robot:80 --serve-token gone --map none/m.seqloop", "gone cannot be read");
+  refused("--serve robot:80 --serve-token gone --map none/m.seqloop", "its folder does not exist");
 }
 
 }  // namespace

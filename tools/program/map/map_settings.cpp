@@ -45,6 +45,17 @@ void check(const MapSettings& settings, bool reference, Faults& faults) {
     if (!settings.session.empty()) faults.push_back({"session", "there is no map", "--map FILE"});
     return;
   }
+  // It is opened once the form of the drive's places is known.
+  std::error_code error;
+  const std::filesystem::path around =
+      std::filesystem::absolute(settings.file, error).parent_path();
+  if (settings.read_only && !std::filesystem::exists(settings.file, error) && !error) {
+    faults.push_back({settings.file.string(), "there is no such map",
+                      "name a map, or make one with `seqloop run --map`"});
+  } else if (!settings.read_only && !std::filesystem::is_directory(around, error)) {
+    faults.push_back({settings.file.string(), "its folder does not exist",
+                      "create " + around.string() + " first"});
+  }
   if (reference) {
     faults.push_back({"map, reference", "there are two maps", "leave out one of them"});
   }

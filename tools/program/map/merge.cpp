@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "program/map/new_map.hpp"
+#include "program/options/verb.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -19,9 +20,8 @@ std::string kind_of(const sqlite::MapForm& form) {
                      form.describer);
 }
 
-/// Looks at all maps before one is copied. Throws SetupError with everything that is wrong.
-void check_maps(const std::vector<fs::path>& maps) {
-  Faults faults;
+/// Looks at all maps before one is copied, and adds everything that is wrong.
+void check_maps(const std::vector<fs::path>& maps, Faults& faults) {
   std::optional<sqlite::MapForm> first;
   for (auto path = maps.begin(); path != maps.end(); ++path) {
     try {
@@ -43,7 +43,6 @@ void check_maps(const std::vector<fs::path>& maps) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
   }
-  if (!faults.empty()) throw SetupError(std::move(faults));
 }
 
 }  // namespace
@@ -51,17 +50,20 @@ void check_maps(const std::vector<fs::path>& maps) {
 std::vector<std::uint64_t> merge_maps(const std::vector<fs::path>& maps, const fs::path& out,
                                       const std::function<void()>& between) {
   if (maps.empty()) throw SetupError({"maps", "there is none to merge", "name one or more"});
-  check_maps(maps);
-  NewMap made(out);
+  Faults faults;
+  check_maps(maps, faults);
+  std::optional<NewMap> made;
+  collect(faults, [&] { made.emplace(out); });
+  refuse(std::move(faults));
   sqlite::MapFile* map = nullptr;
   std::vector<std::uint64_t> added;
   for (const fs::path& path : maps) {
     between();
     const sqlite::MapFile from = sqlite::MapFile::read_only(path);
-    if (map == nullptr) map = &made.open(from.form());
+    if (map == nullptr) map = &made->open(from.form());
     added.push_back(map->add(from));
   }
-  made.commit();
+  made->commit();
   return added;
 }
 

@@ -5,8 +5,10 @@
 
 #include <utility>
 
+#include "files/text_file.hpp"
 #include "program/options/verb.hpp"
 #include "program/run/closure.hpp"
+#include "program/run/odometry.hpp"
 
 namespace seqloop::program {
 
@@ -59,6 +61,11 @@ LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, bo
   }
   if (!wants_graph && !settings.odometry.empty()) {
     faults.push_back({"odometry", "nothing is made of it", "add --pose-graph FILE.g2o"});
+  } else if (!settings.odometry.empty() && !settings.odometry.starts_with('/')) {
+    // It is no topic. When its times begin, the drive says later.
+    collect(faults, [&] {
+      static_cast<void>(parse_tum(files::read_text(settings.odometry), settings.odometry, 0.0));
+    });
   }
   if (!settings.bag.empty()) {
     collect(faults, [&] { bag_ = std::make_unique<ClosuresBag>(settings.bag); });

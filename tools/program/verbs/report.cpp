@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "program/options/verb.hpp"
@@ -20,16 +24,35 @@ struct ReportSettings {
   std::size_t words = 0;  // without a flag in front
 };
 
+/// Adds a fault where a file cannot be read.
+std::ifstream opened(const std::filesystem::path& file, const std::string& remedy, Faults& faults) {
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(file, error);
+  errno = 0;
+  std::ifstream stream;
+  if (!folder) stream.open(file);
+  if (!stream.is_open()) {
+    faults.push_back(
+        {file.string(),
+         folder ? "is a folder" : "cannot be read: " + std::generic_category().message(errno),
+         remedy});
+  }
+  return stream;
+}
+
 nlohmann::ordered_json conditions(const ReportSettings& settings, Faults& faults) {
   if (settings.summary.empty()) return {{"source", settings.run.filename().string()}};
-  std::ifstream stream(settings.summary);
+  std::ifstream stream =
+      opened(settings.summary, "name what `seqloop run --summary` wrote", faults);
+  if (!stream.is_open()) return {};
   auto run = nlohmann::ordered_json::parse(stream, nullptr, false);
   const bool is_summary = run.is_object() && run.contains("budget_ms") &&
                           run["budget_ms"].is_object() && run.contains("source") &&
                           run["source"].is_string();
   if (!is_summary) {
-    faults.push_back(
-        {"summary", settings.summary.string() + " is not what `seqloop run --summary` writes"});
+    faults.push_back({"summary",
+                      settings.summary.string() + " is not what `seqloop run --summary` writes",
+                      "give the summary of that run, or leave --summary out"});
   } else {
     for (const char* counted : {"stages", "gates", "captured", "missed"}) run.erase(counted);
   }
@@ -44,15 +67,16 @@ void report(const ReportSettings& settings, Faults faults) {
   if (settings.out.empty())
     faults.push_back({"out", "not given", "name the page to write, --out page.html"});
   auto run = conditions(settings, faults);
-  std::ifstream lines(settings.run);
-  if (!settings.run.empty() && (!lines.is_open() || std::filesystem::is_directory(settings.run))) {
-    faults.push_back({settings.run.string(), "cannot be read"});
+  std::ifstream lines;
+  if (!settings.run.empty()) {
+    lines = opened(settings.run, "name what `seqloop run --out` wrote", faults);
   }
+  std::optional<files::OutputFile> out;
+  if (!settings.out.empty()) collect(faults, [&] { out.emplace(settings.out); });
   refuse(std::move(faults));
   const std::string page = report_page(lines, settings.run.string(), std::move(run));
-  files::OutputFile out(settings.out);
-  out.write(page);
-  out.commit();
+  out->write(page);
+  out->commit();
 }
 
 }  // namespace

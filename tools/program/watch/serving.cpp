@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "program/options/verb.hpp"
 #include "program/process/say.hpp"
 #include "program/watch/background.hpp"
 #include "program/watch/run_site.hpp"
@@ -61,6 +62,12 @@ http::Address parse(const std::string& text) {
 }
 
 }  // namespace
+
+void check(const ServeSettings& settings, Faults& faults) {
+  collect(faults, [&] { static_cast<void>(parse(*settings.address)); });
+  if (settings.token.empty()) return;
+  collect(faults, [&] { static_cast<void>(read_token(settings.token)); });
+}
 
 class Serving::Impl {
  public:

@@ -23,6 +23,10 @@ struct ServeSettings {
 /// Flags `--serve` and `--serve-token`. @param settings lives as long as the table
 void add_serve_options(OptionTable& options, ServeSettings& settings);
 
+/// Adds what is wrong with the address and the token, before anything is opened there.
+/// @param settings with an address
+void check(const ServeSettings& settings, Faults& faults);
+
 /// A run that can be looked at in a browser, and read by a monitor, while it goes on: pages, JSON,
 /// metrics, as the page of the room `platform/http` lists them. The loop hands snapshots to
 /// `watch()`; everything else happens in threads of the lowest priority, which no frame waits for.
