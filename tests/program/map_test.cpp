@@ -148,12 +148,33 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   expect(0, "import folder --out b", "b: 78 places in 3 sessions");
   EXPECT_EQ(content("b"), content("a"));
   expect_refused("import folder --out b", "there is such a file already");
+  const std::string table = test::read_all(file("folder/places.csv"));
+  const std::string json = test::read_all(file("folder/map.json"));
+  const auto with = [](std::string text, std::string_view part, std::string_view other) {
+    for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += other.size())
+      text.replace(at, part.size(), other);
+    return text;
+  };
+  folder_.write("folder/places.csv", "\xEF\xBB\xBF" + with(table, "\n", "\r\n"));
+  expect(0, "import folder --out as-spreadsheets-write", "78 places in 3 sessions");
+  EXPECT_EQ(content("as-spreadsheets-write"), content("a"));
+  folder_.write("folder/places.csv", with(table, "\n2,1,", "\n1,1,"));
+  expect_refused("import folder --out c", "places.csv:3: place 1 stands behind place 1 of its");
+  folder_.write("folder/places.csv", with(table, "\n1,1,", "\n1,2,"));
+  expect_refused("import folder --out c", "places.csv: place 1 of session 2 is not above place");
+  folder_.write("folder/places.csv", table);
+  folder_.write("folder/map.json", with(json, "tuesday", "monday"));
+  expect_refused("import folder --out c", "map.json: two sessions have the name 'monday'; give");
+  folder_.write("folder/map.json", "no");
+  const auto both = expect_refused("import folder --out b", "map.json: is no JSON object");
+  EXPECT_NE(both.err.find("b: there is such a file already"), std::string::npos) << both.err;
+  folder_.write("folder/map.json", json);
   fs::resize_file(file("folder/session-2.npy"), 5000);
   expect_refused("import folder --out c", "session-2.npy: its numbers are not");
   fs::remove(file("folder/places.csv"));
   expect_refused("import folder --out c", "places.csv");
   folder_.write("folder/map.json", "{}");
-  expect_refused("import folder --out c", "map.json");
+  expect_refused("import folder --out c", "map.json: is not what an export says: key 'form' not");
   expect_refused("import none --out c", "none/map.json: cannot be read; name a folder that");
 }
 

@@ -7,14 +7,18 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "files/npy_header.hpp"
 #include "files/output_folder.hpp"
+#include "files/text_file.hpp"
 #include "program/map/new_map.hpp"
+#include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/json_text.hpp"
 #include "seqloop/fault.hpp"
@@ -57,16 +61,24 @@ nlohmann::json described(const MapFile& map, const sqlite::SessionFacts& facts) 
   return json;
 }
 
+constexpr const char* exported = "name a folder that `seqloop map export` wrote";
+
 /// The cells of a table under a header that must be this one. Throws SetupError.
 std::vector<std::vector<std::string>> cells_of(const fs::path& file, const std::string& header) {
-  std::ifstream stream(file);
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30U;
+  std::istringstream stream(files::read_text(file, most_bytes));
   std::string line;
-  if (!std::getline(stream, line) || line != header) {
-    throw SetupError({file.string(), "does not begin with the line " + header,
-                      "name a folder that `seqloop map export` wrote"});
+  // Spreadsheets end lines as Windows does.
+  const auto take = [&] {
+    if (!std::getline(stream, line)) return false;
+    if (line.ends_with('\r')) line.pop_back();
+    return true;
+  };
+  if (!take() || line != header) {
+    throw SetupError({file.string(), "does not begin with the line " + header, exported});
   }
   std::vector<std::vector<std::string>> rows;
-  while (std::getline(stream, line)) {
+  while (take()) {
     std::vector<std::string> cells(1);
     for (const char letter : line) {
       if (letter == ',') {
@@ -107,8 +119,7 @@ std::vector<std::byte> bytes_of(const fs::path& file) {
   std::vector<std::byte> bytes(error ? 0 : static_cast<std::size_t>(size));
   if (error || !stream.read(reinterpret_cast<char*>(bytes.data()),
                             static_cast<std::streamsize>(bytes.size()))) {
-    throw SetupError(
-        {file.string(), "cannot be read", "name a folder that `seqloop map export` wrote"});
+    throw SetupError({file.string(), "cannot be read", exported});
   }
   return bytes;
 }
@@ -145,10 +156,28 @@ std::map<std::int64_t, Part> parts_of(const fs::path& folder) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto number = number_in<std::uint64_t>(places, i, rows[i][0]);
     Part& part = parts[number_in<std::int64_t>(places, i, rows[i][1])];
+    if (!part.records.empty() && number <= part.records.back().number) {
+      throw SetupError({fmt::format("{}:{}", places.string(), i + 2),
+                        fmt::format("place {} stands behind place {} of its session", number,
+                                    part.records.back().number),
+                        "list places in the order of their numbers"});
+    }
     part.records.push_back({number, number_in<std::uint64_t>(places, i, rows[i][2]),
                             number_in<std::int64_t>(places, i, rows[i][3])});
     const fs::path picture = folder / fmt::format("thumbnail-{}.jpg", number);
     if (fs::exists(picture)) part.thumbnails.push_back({number, bytes_of(picture)});
+  }
+  const Part* before = nullptr;
+  for (const auto& [session, part] : parts) {
+    if (part.records.empty()) continue;
+    const std::uint64_t first = part.records.front().number;
+    if (before != nullptr && first <= before->records.back().number) {
+      throw SetupError({places.string(),
+                        fmt::format("place {} of session {} is not above place {} of one before it",
+                                    first, session, before->records.back().number),
+                        "sessions stand in the order of their places' numbers"});
+    }
+    before = &part;
   }
   const fs::path links = folder / "links.csv";
   const auto found = cells_of(links, links_header);
@@ -163,6 +192,20 @@ std::map<std::int64_t, Part> parts_of(const fs::path& folder) {
     parts[link.session].links.push_back(link);
   }
   return parts;
+}
+
+/// The names of sessions, each of which must be another. Throws SetupError.
+void check_names(const nlohmann::json& sessions, const fs::path& file) {
+  std::set<std::string> names;
+  for (const nlohmann::json& session : sessions) {
+    const std::string name = session.at("name");
+    if (name.empty() || !names.insert(name).second) {
+      throw SetupError(
+          {file.string(),
+           name.empty() ? "a session has no name" : "two sessions have the name '" + name + "'",
+           "give it another"});
+    }
+  }
 }
 
 void import_sessions(const nlohmann::json& json, const fs::path& folder, MapFile& map) {
@@ -257,23 +300,30 @@ void export_map(const MapFile& map, const fs::path& folder) {
 
 void import_map(const fs::path& folder, const fs::path& out) {
   const fs::path file = folder / "map.json";
-  try {
+  Faults faults;
+  std::optional<NewMap> made;
+  nlohmann::json json;
+  collect(faults, [&] { made.emplace(out); });
+  collect(faults, [&] {
     std::ifstream stream(file);
-    if (!stream) {
-      throw SetupError(
-          {file.string(), "cannot be read", "name a folder that `seqloop map export` wrote"});
-    }
-    const nlohmann::json json = nlohmann::json::parse(stream);
-    NewMap made(out);
-    MapFile& map = made.open({json.at("form"), json.at("describer"), json.at("descriptor_size"),
-                              json.at("place_bytes")});
+    if (!stream) throw SetupError({file.string(), "cannot be read", exported});
+    json = nlohmann::json::parse(stream, nullptr, false);
+    if (!json.is_object()) throw SetupError({file.string(), "is no JSON object", exported});
+  });
+  refuse(std::move(faults));
+  try {
+    MapFile& map = made->open({json.at("form"), json.at("describer"), json.at("descriptor_size"),
+                               json.at("place_bytes")});
+    check_names(json.at("sessions"), file);
     import_sessions(json, folder, map);
-    made.commit();
+    made->commit();
   } catch (const nlohmann::json::exception& error) {
+    // In front stands the library's own number of the error.
+    const std::string why = error.what();
     throw SetupError(
-        {file.string(), error.what(), "name a folder that `seqloop map export` wrote"});
-  } catch (const std::invalid_argument& error) {
-    throw SetupError({folder.string(), error.what(), "places.csv must list places in order"});
+        {file.string(), "is not what an export says: " + why.substr(why.find("] ") + 2), exported});
+  } catch (const std::invalid_argument&) {
+    throw SetupError({folder.string(), "its places and links do not fit each other", exported});
   }
 }
 
