@@ -33,12 +33,14 @@ constexpr std::array<std::pair<const char*, const char*>, 6> manners{
      {"Cross-Origin-Opener-Policy", "same-origin"},
      {"Cache-Control", "no-store"}}};
 
+/// @param why without quotes, as it stands in JSON
 std::string refusal(int status, std::string_view why) {
+  const std::string body = "{\"error\":\"" + std::string(why) + "\"}";
   std::string text = "HTTP/1.1 " + std::to_string(status) + " Refused\r\n";
   for (const auto& [name, value] : manners) text += std::string(name) + ": " + value + "\r\n";
-  text += "Content-Type: text/plain; charset=utf-8\r\nConnection: close\r\nContent-Length: " +
-          std::to_string(why.size() + 1) + "\r\n\r\n";
-  return text.append(why) += '\n';
+  text += "Content-Type: application/json\r\nConnection: close\r\nContent-Length: " +
+          std::to_string(body.size()) + "\r\n\r\n";
+  return text + body;
 }
 
 Rules rules_for(const Address& address, std::string token) {

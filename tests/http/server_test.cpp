@@ -118,6 +118,9 @@ TEST_F(ServerTest, TakesChangesWithTheTokenAlone) {
         headers + "\r\n{}");
   };
   EXPECT_TRUE(post("").starts_with("HTTP/1.1 401"));
+  EXPECT_TRUE(post("").ends_with(
+      "\r\n\r\n{\"error\":\"changes need the token that was printed at the start\"}"));
+  EXPECT_NE(post("").find("Content-Type: application/json\r\n"), std::string::npos);
   EXPECT_TRUE(post("Authorization: Bearer tokem\r\n").starts_with("HTTP/1.1 401"));
   EXPECT_TRUE(
       post("Authorization: Bearer token\r\nOrigin: http://evil\r\n").starts_with("HTTP/1.1 403"));

@@ -142,6 +142,11 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_TRUE(until([](const Json& now) { return now["counts"]["gates"]["match"] > 0; }))
       << "the new threshold holds";
   EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", "accepted"}}), "200");
+  for (const char* wrong : {"first=abc", "first=-1", "first=0&count=1e3"}) {
+    const std::string reply = get("/api/loops?" + std::string(wrong));
+    EXPECT_TRUE(reply.starts_with("HTTP/1.1 400")) << reply;
+    EXPECT_TRUE(json(reply)["error"].is_string());
+  }
   const Json loop = json(get("/api/loops?first=0&count=1"))["loops"][0];
   Json verdict{
       {"loop", 0}, {"frame", loop["frame"]}, {"match", loop["match"]}, {"verdict", "accepted"}};

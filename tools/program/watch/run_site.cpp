@@ -266,6 +266,10 @@ http::Reply RunSite::get(std::string_view path, std::string_view query) {
   if (path == "/api/marks") return json_reply(view_.marks());
   if (path == "/api/truth.csv") return {200, "text/csv; charset=utf-8", view_.truth_csv()};
   if (path == "/api/loops") {
+    for (const std::string_view name : {"first", "count"}) {
+      if (!value_in(query, name).empty() && !number_in(query, name))
+        return fault(400, "first and count are whole numbers, 0 or more");
+    }
     const std::uint64_t count = number_in(query, "count").value_or(most_loops_at_once);
     return json_reply(
         view_.loops(static_cast<std::size_t>(number_in(query, "first").value_or(0)),
