@@ -52,7 +52,8 @@ Holder::Holder(const std::filesystem::path& path) {
     if (file && !held) continue;
     ::close(std::exchange(descriptor_, -1));
     if (!file) throw SetupError({name, "is no file", "name a map, or one that is to become one"});
-    throw SetupError({name, holder_of(path), "wait until it ends, or only read (--read-only)"});
+    throw SetupError({name, holder_of(path),
+                      "wait until it ends; meanwhile `run` and `match` can read it (--read-only)"});
   } while (!is_at(path));
 }
 

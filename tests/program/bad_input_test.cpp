@@ -206,6 +206,7 @@ TEST_F(BadInput, ConfigurationFiles) {
 }
 
 TEST_F(BadInput, CommandLines) {
+  expect_refused("run --source good.npy --standardise", {"--standardise: 1 required"});
   expect_refused("", {"subcommand"});
   expect_refused("fly", {"fly"});
   expect_refused("match --quer good.npy", {"did you mean --query"});

@@ -204,6 +204,14 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
   EXPECT_GT(info("with.seqloop")["thumbnail_bytes"], 40 * 200);
   EXPECT_EQ(info("without.seqloop")["thumbnails"], 0);
   expect_done("map check with.seqloop");
+  expect_refused("run --source drive --reference with.seqloop",
+                 "to localise in a map: --map with.seqloop --read-only");
+  expect_done("describe --source drive --out drive.npy");
+  expect_refused("match --query drive.npy --reference with.seqloop --out m.csv", "to localise in");
+  for (const char* how : {"", " --read-only"}) {
+    expect_refused("match --query drive.npy --out m.csv --map with.seqloop" + std::string(how),
+                   "; `seqloop run --source PICTURES --map FILE` describes them");
+  }
   expect_done("run --source drive --map with.seqloop --session two --out again.jsonl");
   EXPECT_EQ(info("with.seqloop")["thumbnails"], 80);
   EXPECT_FALSE(exists("drawn"));

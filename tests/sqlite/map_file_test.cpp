@@ -721,7 +721,7 @@ TEST_F(Map, IsWrittenByOneProcessAtATime) {
     ASSERT_TRUE(other.well());
     const std::string fault = setup_error([this] { (void)open(); });
     EXPECT_TRUE(says(fault, "process " + std::to_string(other.process()) + " on "));
-    EXPECT_TRUE(says(fault, "--read-only"));
+    EXPECT_TRUE(says(fault, "meanwhile `run` and `match` can read it (--read-only)"));
     EXPECT_NE(content(), before);
   }
   MapFile map = open();

@@ -185,7 +185,11 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   const auto layout = std::make_shared<Layout>();
   layout->column_width(flags_width);
   app.formatter(layout);
-  const bool show_all = std::find(argv, argv + argc, std::string_view("--help-all")) != argv + argc;
+  const auto asked = [&](std::string_view flag) {
+    return std::find(argv, argv + argc, flag) != argv + argc;
+  };
+  // A flag that is hidden has no name in faults either: nothing is, unless help is asked for.
+  const bool show_all = asked("--help-all") || !(asked("-h") || asked("--help"));
   for (std::size_t i = 0; i < verbs.size(); ++i) {
     add_to(app, verbs[i], given[i], show_all);
     for (const Option& option : verbs[i].options.options()) all_names.push_back(option.name);

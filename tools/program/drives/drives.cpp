@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -48,6 +49,19 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
     throw std::invalid_argument(std::to_string(count) + " is more than " + std::to_string(most));
   }
   return count;
+}
+
+/// Refuses a map, which is no drive, before a reader of drives says that it knows no such format.
+void refuse_map(const std::filesystem::path& path) {
+  constexpr std::string_view magic = "SQLite format 3";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  std::string start(magic.size(), '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start != magic) return;
+  throw SetupError({path.string(), "is a map, or another database, and no drive",
+                    "to localise in a map: --map " + path.string() + " --read-only"});
 }
 
 }  // namespace
@@ -99,6 +113,7 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
 }
 
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
+  refuse_map(path);
   files::Matrix descriptors = files::read_npy(path);
   const std::size_t changed = difference == Difference::euclidean ? normalise_rows(descriptors) : 0;
   if (changed > 0) {
@@ -122,6 +137,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
   if (bags::is_bag(path)) {
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
+  refuse_map(path);
   if (!settings.topic.empty()) say("{}: it is no bag: --topic does not choose here", path.string());
   const PictureNeeds needs = describer == nullptr ? PictureNeeds{} : describer->needs();
   return opencv::open_source(path, {.frames_per_second = settings.fps,

@@ -35,13 +35,35 @@ std::string form_of(const MatcherConfig& config) {
   return form + (config.standardisation.on ? " standardised" : " raw");
 }
 
+constexpr const char* of_pictures =
+    "`seqloop run --source PICTURES --map FILE` describes them as the map's were";
+
+/// Whether a map was made from pictures, and what is matched was described before.
+bool wants_pictures(const sqlite::MapForm& map, const sqlite::MapForm& drive) {
+  return drive.describer == "descriptors" && map.describer != drive.describer;
+}
+
+/// Opens a map to write. Throws SetupError.
+sqlite::MapFile opened_to_write(const std::filesystem::path& path, const sqlite::MapForm& form) {
+  try {
+    return sqlite::MapFile::open(path, form);
+  } catch (const SetupError& error) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) throw;
+    if (!wants_pictures(sqlite::MapFile::read_only(path).form(), form)) throw;
+    Faults faults = error.faults();
+    faults.back().remedy = of_pictures;
+    throw SetupError(std::move(faults));
+  }
+}
+
 sqlite::MapFile opened(const MapSettings& settings, const MatcherConfig& config,
                        std::size_t descriptor_size, std::string describer) {
   const PlaceMap one(config, {1, descriptor_size});
   const sqlite::MapForm form{form_of(config), std::move(describer), descriptor_size,
                              one.rows().saved_size()};
   if (!settings.read_only) {
-    sqlite::MapFile file = sqlite::MapFile::open(settings.file, form);
+    sqlite::MapFile file = opened_to_write(settings.file, form);
     // Refused, a drive would leave a file that binds others to its form.
     file.drop_if_unused();
     return file;
@@ -54,7 +76,8 @@ sqlite::MapFile opened(const MapSettings& settings, const MatcherConfig& config,
                    "of {}, by '{}'",
                    file.form().form, file.form().descriptor_size, file.form().describer, form.form,
                    form.descriptor_size, form.describer),
-       "describe and compare as when the map was made"});
+       wants_pictures(file.form(), form) ? of_pictures
+                                         : "describe and compare as when the map was made"});
 }
 
 }  // namespace
