@@ -49,7 +49,7 @@ TEST(Truth, AnEmptyToleranceIsNone) {
   EXPECT_TRUE(truth.right(1, 12, 2));
   EXPECT_FALSE(truth.right(1, 12, 1));
   EXPECT_FALSE(truth.right(2, 21, 2));
-  EXPECT_FALSE(truth.has_own_tolerances());
+  EXPECT_EQ(truth.own_tolerances(), OwnTolerances::some);
 }
 
 std::string faults_of(const std::string& text) {

@@ -77,9 +77,11 @@ Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
     }
     truth.places_[table.whole(row, columns[0])].push_back(run);
   });
-  truth.own_tolerances_ = own == table.rows();
   if (truth.places_.empty()) {
     throw SetupError({table.name(), "it has no rows", "--truth no-revisit if nothing comes back"});
+  }
+  if (own > 0) {
+    truth.own_tolerances_ = own == table.rows() ? OwnTolerances::all : OwnTolerances::some;
   }
   return truth;
 }

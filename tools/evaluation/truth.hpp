@@ -18,6 +18,9 @@ enum class Unlisted : std::uint8_t {
   unknown  ///< nobody looked: neither right nor wrong
 };
 
+/// How many rows of a truth say themselves how far off a match may be.
+enum class OwnTolerances : std::uint8_t { none, some, all };
+
 /// Which places each query frame really shows.
 class Truth {
  public:
@@ -65,8 +68,8 @@ class Truth {
     return unlisted_ == Unlisted::wrong || places_.contains(query);
   }
 
-  /// Whether each row says how far off a match may be, so that no asked tolerance counts.
-  [[nodiscard]] bool has_own_tolerances() const noexcept { return own_tolerances_; }
+  /// Where it is all of them, no asked tolerance counts.
+  [[nodiscard]] OwnTolerances own_tolerances() const noexcept { return own_tolerances_; }
 
   /// @param tolerance frames
   [[nodiscard]] bool right(std::uint64_t query, std::uint64_t match,
@@ -86,7 +89,7 @@ class Truth {
   std::optional<std::uint64_t> identity_frames_;      // set: frame i shows place i
   std::map<std::uint64_t, std::vector<Run>> places_;  // of a query that is new: none
   Unlisted unlisted_ = Unlisted::wrong;
-  bool own_tolerances_ = false;
+  OwnTolerances own_tolerances_ = OwnTolerances::none;
 };
 
 }  // namespace seqloop::evaluation

@@ -165,8 +165,16 @@ std::string how_near(const TruthSettings& settings, const evaluation::Truth& tru
   if (by_positions(settings)) {
     return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
   }
-  if (truth.has_own_tolerances()) return "the truth's own tolerances";
-  return fmt::format("{} frames", tolerance(settings));
+  const std::string asked = fmt::format("{} frames", tolerance(settings));
+  switch (truth.own_tolerances()) {
+    case evaluation::OwnTolerances::all:
+      return "the truth's own tolerances";
+    case evaluation::OwnTolerances::some:
+      return "the truth's own tolerances, otherwise " + asked;
+    case evaluation::OwnTolerances::none:
+      break;
+  }
+  return asked;
 }
 
 }  // namespace seqloop::program
