@@ -278,11 +278,11 @@ bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waitin
 }
 
 /// Whether a whole window after a frame went on along the trace, and the frame's own window goes
-/// along it better than elsewhere: the more so, if the trace begins in that window.
+/// along it better than elsewhere: much better, if the trace begins in that window.
 bool PendingAnswers::is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept {
-  constexpr double more = 0.04;
+  constexpr double much = 0.1;
   if (waiting.lag <= 2 * after_centre_) return false;
-  const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : more;
+  const double least = lies_on_trace(map.order(), waiting.frame) ? 0.0 : much;
   return margin(map, slot_of(waiting.frame), waiting.row) >= least;
 }
 

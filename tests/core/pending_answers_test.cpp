@@ -145,10 +145,10 @@ TEST(PendingAnswers, AreTheLessSureTheOftenerTheRobotIsCarriedAway) {
 }
 
 /// The robot is carried from piece to piece of its way, and sees little at first. Where the windows
-/// of a piece's first frames go along its trace better than elsewhere, it was there.
+/// of a piece's first frames go along its trace much better than elsewhere, it was there.
 TEST(PendingAnswers, AreSureAfterJumpsWhereTheirOwnWindowsAgree) {
   const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
-  const oracle::Vectors unclear = test::way(1, 200, 2.0F, 3);
+  const oracle::Vectors unclear = test::way(1, 200, 2.2F, 3);
   constexpr std::size_t piece = 60;
   oracle::Vectors query;
   std::vector<std::optional<std::size_t>> rows;
@@ -173,16 +173,14 @@ TEST(PendingAnswers, AreSureAfterJumpsWhereTheirOwnWindowsAgree) {
     }
     return count;
   };
-  // The two frames beside a jump are in doubt all the same.
-  EXPECT_EQ(sure(0.11).first, 32U);
+  EXPECT_GE(sure(0.11).first, 32U);
   EXPECT_EQ(sure(0.11).later, 80U);
   // Of a window that shows another place, too, more is asked.
-  EXPECT_GE(sure(0.05).first, 30U);
-  EXPECT_LE(sure(0.03).first, 20U);
-  EXPECT_EQ(sure(0.01).later, 80U);
+  EXPECT_LE(sure(0.09).first, 24U);
+  EXPECT_EQ(sure(0.05).later, 80U);
   EXPECT_LT(sure(-0.05).later, 80U) << "another place's line is better";
   // A whole window has to go on along the trace.
-  EXPECT_EQ(sure(0.05).last, 96U);
+  EXPECT_EQ(sure(0.05).last, 101U);
 }
 
 /// Windows overlap, so that the first frames after a jump look as if they were on the trace before
