@@ -19,16 +19,19 @@ struct Chances {
 constexpr Chances localising{0.01, 0.001, 1e-5};
 constexpr Chances closing_loops{0.001, 0.001, 1e-10};
 
+/// The same with a cut. Where loops are closed, a trace ends with none: somebody who walks past the
+/// camera makes cuts, too.
+constexpr Chances localising_at_cuts{0.9, 0.95, localising.returns};
+constexpr Chances closing_loops_at_cuts{0.9, closing_loops.ends, closing_loops.returns};
+
 /// Where the pictures go on from one to the next, a frame that has changed as much as can be is a
 /// cut: the robot was carried away, or the camera was covered. Drives whose frames are all new show
 /// none.
 /// @param novelty what is usually new of this drive's frames
-/// @param usual of frames that are no cuts
-Chances chances_of(double change, double novelty, const Chances& usual) {
+bool is_cut(double change, double novelty) {
   constexpr double all = 0.6;
   constexpr double goes_on = 0.3;
-  const bool cut = change > all && novelty < goes_on;
-  return cut ? Chances{0.9, 0.95, usual.returns} : usual;
+  return change > all && novelty < goes_on;
 }
 
 /// What frames gained by novelty; 0 where there was none.
@@ -110,13 +113,17 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   constexpr double tiny = 1e-200;  // so that there is something to divide by
   Chances usual_chances = localises_ ? localising : closing_loops;
   usual_chances.ends += jumps;
+  const Chances& at_cuts = localises_ ? localising_at_cuts : closing_loops_at_cuts;
+  const auto chances_of = [&](const BeliefTraces::Step& step) -> const Chances& {
+    return is_cut(step.change, novelty) ? at_cuts : usual_chances;
+  };
   double fresh = std::max({1.0 - before, std::min(1.0, forgotten * jumps), tiny});
   double on = 1.0;
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
     const double likelier = exponential(step.gain - step.asked);
-    const Chances chances = chances_of(step.change, novelty, usual_chances);
+    const Chances& chances = chances_of(step);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;
       const double comes_back = gone * chances.returns;
@@ -145,8 +152,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
       share[i] = is / (is + here.fresh * after.fresh[i] + here.gone * after.gone[i]);
     }
     on_[back] = {share[0], share[1]};
-    after.step(here.likelier, here.gone_likelier,
-               chances_of(trace[back].change, novelty, usual_chances));
+    after.step(here.likelier, here.gone_likelier, chances_of(trace[back]));
   }
   return on_.first(asked);
 }

@@ -65,7 +65,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     const auto moves = [&](std::size_t i, State from, State to) {
       if (i == 0) return from == to ? 1.0 : 0.0;
       const double begins = is_cut(i) ? 0.9 : loops ? 0.001 : 0.01;
-      const double ends = is_cut(i) ? 0.95 : 0.001 + jumps;
+      const double ends = is_cut(i) && !loops ? 0.95 : 0.001 + jumps;
       const double returns = loops ? 1e-10 : 1e-5;
       const std::array<std::array<double, 3>, 3> chances{
           {{1.0 - begins, begins, 0.0}, {0.0, 1.0 - ends, ends}, {0.0, returns, 1.0 - returns}}};
@@ -166,6 +166,26 @@ TEST(TraceSpan, BeginsAndEndsWithACut) {
     EXPECT_EQ(on[19].still > 0.9, sees_cuts) << on[19].still;
     EXPECT_EQ(on[10].still > 0.9, sees_cuts) << on[10].still;
     EXPECT_EQ(on[9].still < 0.1, sees_cuts) << on[9].still;
+  }
+}
+
+/// Somebody walks past the camera for ten frames, and is gone again. Where a robot localises it may
+/// have been carried away as well.
+TEST(TraceSpan, ClosingLoopsItGoesOnThroughCuts) {
+  TestArena memory;
+  constexpr double novelty = 0.1;
+  std::vector<BeliefTraces::Step> trace;
+  for (std::size_t i = 0; i < 60; ++i) {
+    const bool hidden = i >= 20 && i < 30;
+    const bool cut = i == 19 || i == 29;
+    trace.push_back({0, hidden ? -0.1 : 0.3, 0.1, cut ? 0.615 : 0.1});
+  }
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    SCOPED_TRACE(static_cast<int>(use));
+    TraceSpan span(memory.arena, use, 60);
+    const auto on = span.find(trace, 0.5, 0.0, novelty, 0.0, trace.size());
+    EXPECT_EQ(on[25].still > 0.9, use == Use::close_loops) << on[25].still;
+    EXPECT_EQ(on[10].still > 0.99, use == Use::close_loops) << on[10].still;
   }
 }
 

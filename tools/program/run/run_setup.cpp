@@ -164,9 +164,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   setup.budget = budget(settings.loop, faults);
   setup.overload = overload_rule(settings.loop, faults);
   prepare(settings.real_time, faults);
-  if (settings.serve.address) {
-    check(settings.serve, faults);
-  } else if (!settings.serve.token.empty()) {
+  if (!settings.serve.address && !settings.serve.token.empty()) {
     faults.push_back({"serve-token", "nothing is served", "add --serve, or leave it out"});
   }
   if (!(settings.give_up_s >= 0.0)) faults.push_back({"give-up-s", "it must be 0 (never) or more"});

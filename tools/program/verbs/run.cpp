@@ -113,6 +113,7 @@ bool heed(const Wishes& wishes, Detector& detector, Clock& clock) {
 void run(const RunSettings& settings, Faults faults) {
   take_interruptions();
   live::SteadyClock clock;
+  if (settings.serve.address) check(settings.serve, faults);
   RunSetup setup = set_up(settings, std::move(faults), clock);
   stop_if_interrupted();
   if (!settings.pictures.empty()) make_folder(settings.pictures);
