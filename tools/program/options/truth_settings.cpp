@@ -165,7 +165,7 @@ std::string how_near(const TruthSettings& settings, const evaluation::Truth& tru
   if (by_positions(settings)) {
     return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
   }
-  const std::string asked = fmt::format("{} frames", tolerance(settings));
+  std::string asked = fmt::format("{} frames", tolerance(settings));
   switch (truth.own_tolerances()) {
     case evaluation::OwnTolerances::all:
       return "the truth's own tolerances";
