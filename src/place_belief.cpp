@@ -112,14 +112,13 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
     restart();
     return sketches_;
   }
-  novelty_ = scene->novelty;
   const bool earlier_drives = has_earlier_drives(view);
   if (earlier_drives) first_frames_.take(view, *scene);
   const bool begins = weighed_++ < FirstFrames::most;
   const double rarely = begins && earlier_drives ? coming_at_first : coming;
   const double comes = std::max(rarely, std::min(coming_at_first, jumps)) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
-  const double born = comes * std::min(1.0, 4.0 * novelty_) * new_place_;
+  const double born = comes * std::min(1.0, 4.0 * scene->novelty) * new_place_;
   const std::optional<std::size_t> led_to = std::exchange(expected_, std::nullopt);
   const double by_line = led_to && *led_to < view.rows ? where_it_leads * born : 0.0;
   const double each = (born - by_line) / static_cast<double>(view.seen->scanned().bits.size());
@@ -127,7 +126,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   move(view.map->order(), *scene, jumps, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
-  const double left = leaving * novelty_;
+  const double left = leaving * scene->novelty;
   for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
   ended_.mass *= 1.0 - left;
   new_place_ = new_place_ - born + left * on;

@@ -74,10 +74,10 @@ class PlaceBelief {
   };
   [[nodiscard]] const std::optional<Likeliest>& likeliest() const noexcept { return likeliest_; }
 
-  /// Remembers the log-odds of the likeliest row. @return the best on the way there, fading. In a
-  /// drive that closes loops the best of all rows starts anew where the newest frames raise much
-  /// doubt: the robot has left the road that it came along, and what was known there says nothing
-  /// of the next.
+  /// Remembers the log-odds of the likeliest row. @return the best on the way there. In a drive
+  /// that closes loops the best of all rows starts anew where the newest frames raise much doubt:
+  /// the robot has left the road that it came along, and what was known there says nothing of the
+  /// next.
   double remember(double odds) noexcept;
 
   /// That the robot is somewhere new, 0 .. 1.
@@ -109,7 +109,7 @@ class PlaceBelief {
     double told = 0.0;      // what the newest frame said for it
     double gain = 0.0;      // decaying sum of that
     double wrong = 0.0;     // the same of the frames at which it was wrong
-    double past = -10.0;    // best log-odds on the way, fading
+    double past = -10.0;    // best log-odds on the way
     double contrast = 0.0;  // decaying mean
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
@@ -153,8 +153,7 @@ class PlaceBelief {
   std::size_t sketches_ = 0;
   std::size_t weighed_ = 0;  // frames since nothing was known
   double new_place_ = 1.0;
-  WrongRows wrong_;       // what the best wrong rows gain
-  double novelty_ = 0.0;  // of the newest frame
+  WrongRows wrong_;  // what the best wrong rows gain
   std::size_t count_ = 0;
   std::size_t moved_count_ = 0;
   Ended ended_;
