@@ -121,6 +121,32 @@ TEST_F(BadInput, WhatDecides) {
   expect_match_refused(drives + "--decide-by luck", {"decide-by", "'luck'"});
 }
 
+TEST_F(BadInput, ADefaultThatIsWrittenOutDecidesNothing) {
+  const std::string drives = " --out m.csv --reference good.npy --query good.npy ";
+  const std::string no_probability = "no probability was measured of such differences";
+  for (const std::string how : {"--method seqslam", "--difference mean-absolute", "--enhance on"}) {
+    expect_refused("match " + how + drives + "--patience 120",
+                   {"patience: the uniqueness decides: " + no_probability + ", and no frame waits",
+                    "--max-uniqueness, or --decide-by probability"});
+    expect_refused("match " + how + drives + "--min-probability .99",
+                   {"min-probability: the uniqueness decides: " + no_probability});
+  }
+  expect_refused("match --paper" + drives + "--patience 120 --min-probability .99",
+                 {"patience: the uniqueness decides under --paper", "min-probability: "});
+  expect_refused("match --decide-by uniqueness" + drives + "--patience 120",
+                 {"patience: the uniqueness decides, and no frame waits"});
+  const auto list = [&](const std::string& flags) {
+    const test::Outcome outcome = run("match" + drives + flags);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return test::read_all(file("m.csv"));
+  };
+  for (const std::string how : {"", "--method seqslam --decide-by probability "}) {
+    const std::string wanted = list(how);
+    EXPECT_EQ(list(how + "--patience 120"), wanted);
+    EXPECT_EQ(list(how + "--min-probability .99"), wanted);
+  }
+}
+
 TEST_F(BadInput, DrivesThatSayNothingAreAnsweredAndNotAccepted) {
   constexpr std::size_t size = 12;
   write_npy("one.npy", oracle::drive(1, 1, size));

@@ -74,10 +74,10 @@ bool calibrated(const MatcherConfig& config) {
   return config.difference == Difference::euclidean && !config.enhance;
 }
 
-/// What accepts a match. A threshold of the other kind would do nothing, and is a fault.
+/// What accepts a match. A threshold of the other kind would do nothing, and is a fault: it does
+/// not choose, as a default that is written out would choose otherwise than one that is not.
 void resolve_decision(const MatcherSettings& settings, MatcherConfig& config, Faults& faults) {
-  const bool asked = settings.min_probability || settings.patience;
-  const bool probability = !settings.paper && (asked || calibrated(config));
+  const bool probability = !settings.paper && calibrated(config);
   config.decision =
       settings.decision.value_or(probability ? Decision::probability : Decision::uniqueness);
   config.min_probability = settings.min_probability.value_or(config.min_probability);
@@ -96,12 +96,12 @@ void resolve_decision(const MatcherSettings& settings, MatcherConfig& config, Fa
   const std::string remedy = settings.decision
                                  ? "--max-uniqueness, or leave --decide-by uniqueness out"
                                  : "--max-uniqueness, or --decide-by probability";
-  if (settings.min_probability) {
-    faults.push_back({"min-probability", "the uniqueness decides", remedy});
+  std::string why = "the uniqueness decides";
+  if (!settings.decision) {
+    why += settings.paper ? " under --paper" : ": no probability was measured of such differences";
   }
-  if (settings.patience) {
-    faults.push_back({"patience", "where the uniqueness decides, no frame waits", remedy});
-  }
+  if (settings.min_probability) faults.push_back({"min-probability", why, remedy});
+  if (settings.patience) faults.push_back({"patience", why + ", and no frame waits", remedy});
 }
 
 }  // namespace
@@ -188,8 +188,7 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
   options.section("Decision", Shown::in_help_all);
   options.add({"decide-by", ValueKind::text,
                "what accepts a match: probability or uniqueness [probability; uniqueness under "
-               "--paper and for "
-               "seqslam]",
+               "--paper, for seqslam, mean-absolute and --enhance on]",
                [&settings](std::string_view value) { settings.decision = parse_decision(value); }});
   options.add({"max-uniqueness", ValueKind::number,
                "by uniqueness: a match is accepted up to this, above 0 to 1 [0.94]",
