@@ -49,11 +49,12 @@ void check(std::size_t bytes, std::size_t size, std::size_t components) {
 /// Products of all pictures with each other, 128 subtracted: that moves the mean only, and of
 /// numbers up to 128 a whole block of products (128^2 * 1024 = 2^24) is exact in float, so that
 /// the order of the sums makes no difference.
-Eigen::MatrixXd products_of(const Pictures& pictures) {
+Eigen::MatrixXd products_of(const Pictures& pictures, const std::function<void()>& between) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(pictures.rows(), pictures.rows());
   Eigen::MatrixXf values(pictures.rows(), block);
   Eigen::MatrixXf products(pictures.rows(), pictures.rows());
   for (Index first = 0; first < pictures.cols(); first += block) {
+    if (between) between();
     const Index width = std::min(block, pictures.cols() - first);
     auto part = values.leftCols(width);
     part = pictures.middleCols(first, width).cast<float>().array() - 128.0F;
@@ -76,11 +77,12 @@ void centre(Eigen::MatrixXd& products) {
 
 /// @return [N, found]: each column makes a unit component of centred pictures, the largest variance
 ///   first
-Eigen::MatrixXd weights_of(const Pictures& pictures, std::size_t components) {
+Eigen::MatrixXd weights_of(const Pictures& pictures, std::size_t components,
+                           const std::function<void()>& between) {
   // Of the sum of all squares; rounding makes up to about 1e-13 of it.
   constexpr double vanishing = 1e-12;
   if (components == 0) return {};
-  Eigen::MatrixXd products = products_of(pictures);
+  Eigen::MatrixXd products = products_of(pictures, between);
   const double least = vanishing * products.trace();
   centre(products);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
@@ -102,17 +104,19 @@ Tile load(std::span<const std::uint8_t> values, std::size_t first) noexcept {
 }  // namespace
 
 PrincipalComponents::PrincipalComponents(std::span<const std::uint8_t> pictures, std::size_t size,
-                                         std::size_t components)
+                                         std::size_t components,
+                                         const std::function<void()>& between)
     : size_(size), stride_((size + tile - 1) / tile * tile) {
   check(pictures.size(), size, components);
   const Pictures all(pictures.data(), static_cast<Index>(pictures.size() / size),
                      static_cast<Index>(size));
-  const Eigen::MatrixXd weights = weights_of(all, components);
+  const Eigen::MatrixXd weights = weights_of(all, components, between);
   coefficients_.resize(static_cast<std::size_t>(weights.cols()));
   rows_.resize((1 + count()) * stride_);
   Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> rows(
       rows_.data(), weights.cols() + 1, static_cast<Index>(stride_));
   for (Index first = 0; first < all.cols(); first += block) {
+    if (between) between();
     const Index width = std::min(block, all.cols() - first);
     Eigen::MatrixXd part = all.middleCols(first, width).cast<double>();
     const Eigen::RowVectorXd mean = part.colwise().mean();

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,11 +19,13 @@ class PrincipalComponents {
   /// @param pictures   [N, P] bytes, a picture a row, N from 1 to most_pictures
   /// @param size       P, values in a picture, at least 1
   /// @param components m, from 0 to N - 1
+  /// @param between    called before each 1,024 values of the pictures; what it throws ends the
+  ///   learning
   /// Errors: SetupError, all faults at once.
   /// Work: N N P / 2 + m N P MACs, and some 10 N N N for the eigenvectors.
   /// Allocates: 4 (m + 1) P bytes that stay; while learning some 24 N N + 8 (m + 1024) N more.
   PrincipalComponents(std::span<const std::uint8_t> pictures, std::size_t size,
-                      std::size_t components);
+                      std::size_t components, const std::function<void()>& between = {});
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }  // P
 

@@ -127,7 +127,7 @@ class BagOfWords::Impl {
     }
     try {
       vocabulary_ = learn_words(values, static_cast<int>(words), between);
-      weigh(pictures);
+      weigh(pictures, between);
     } catch (const cv::Exception& error) {
       throw SetupError(Fault{"words", "OpenCV cannot learn them (" + one_line(error.err) + ")"});
     }
@@ -153,10 +153,11 @@ class BagOfWords::Impl {
   }
 
   /// A word's weight: the logarithm of how many pictures there are for one that has it.
-  void weigh(const std::vector<cv::Mat>& pictures) {
+  void weigh(const std::vector<cv::Mat>& pictures, const std::function<void()>& between) {
     std::vector<float> counts(weights_.size());
     std::vector<std::size_t> having(weights_.size());
     for (const cv::Mat& features : pictures) {
+      if (between) between();
       count_words(features, counts);
       for (std::size_t word = 0; word < counts.size(); ++word)
         if (counts[word] > 0.0F) ++having[word];

@@ -43,10 +43,11 @@ class NetPicture {
 };
 
 PrincipalComponents learn(NetPicture& picture, std::span<FrameSource* const> training,
-                          std::size_t components) {
+                          std::size_t components, const std::function<void()>& between) {
   std::vector<std::uint8_t> pictures;
   const std::size_t size = picture.bytes().size();
   const TrainingCount count = for_each_picture(training, [&](const Image& image) {
+    if (between) between();
     if (pictures.size() == PrincipalComponents::most_pictures * size) {
       throw SetupError(
           Fault{"training",
@@ -63,7 +64,7 @@ PrincipalComponents learn(NetPicture& picture, std::span<FrameSource* const> tra
         "give longer drives, or remove at least one component fewer than there "
         "are pictures"});
   }
-  return {pictures, size, components};
+  return {pictures, size, components, between};
 }
 
 }  // namespace
@@ -71,8 +72,10 @@ PrincipalComponents learn(NetPicture& picture, std::span<FrameSource* const> tra
 class ChangeRemoval::Impl {
  public:
   Impl(std::unique_ptr<DnnDescriber> net, std::span<FrameSource* const> training,
-       std::size_t components)
-      : net_(std::move(net)), picture_(*net_), components_(learn(picture_, training, components)) {}
+       std::size_t components, const std::function<void()>& between)
+      : net_(std::move(net)),
+        picture_(*net_),
+        components_(learn(picture_, training, components, between)) {}
 
   /// May throw.
   [[nodiscard]] Description describe(const Image& image, std::span<float> descriptor) {
@@ -97,8 +100,9 @@ class ChangeRemoval::Impl {
 };
 
 ChangeRemoval::ChangeRemoval(std::unique_ptr<DnnDescriber> net,
-                             std::span<FrameSource* const> training, std::size_t components)
-    : impl_(std::make_unique<Impl>(std::move(net), training, components)) {}
+                             std::span<FrameSource* const> training, std::size_t components,
+                             const std::function<void()>& between)
+    : impl_(std::make_unique<Impl>(std::move(net), training, components, between)) {}
 
 ChangeRemoval::~ChangeRemoval() = default;
 

@@ -133,14 +133,17 @@ TEST(BagOfWords, APictureWithoutAFeatureIsBlank) {
 
 // Bad input: drives without enough to learn from.
 TEST(BagOfWords, StopsLearningWhenItIsToldTo) {
-  SyntheticDrive source(drive(1, 6));
-  const std::array<FrameSource*, 1> training{&source};
-  int calls = 0;
-  const auto at_the_tenth = [&] {
-    if (++calls == 10) throw std::runtime_error("enough");
-  };
-  EXPECT_THROW(BagOfWords(training, 50, at_the_tenth), std::runtime_error);
-  EXPECT_EQ(calls, 10) << "six pictures, and rounds";
+  // Six pictures, 19 rounds, and the pictures again, of which words are counted.
+  for (const int last : {1, 10, 26, 31}) {
+    SyntheticDrive source(drive(1, 6));
+    const std::array<FrameSource*, 1> training{&source};
+    int calls = 0;
+    const auto stop = [&] {
+      if (++calls == last) throw std::runtime_error("enough");
+    };
+    EXPECT_THROW(BagOfWords(training, 50, stop), std::runtime_error);
+    EXPECT_EQ(calls, last);
+  }
 }
 
 TEST(BagOfWords, RefusesWhatItCannotLearnFrom) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "expect_setup_error.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -120,6 +121,20 @@ TEST(ChangeRemoval, SaysHowManyComponentsThereAre) {
 }
 
 // Bad input: too few pictures, too many, none that can be described.
+TEST(ChangeRemoval, StopsLearningWhenItIsToldTo) {
+  // Three pictures, their products, and the components.
+  for (const int last : {1, 3, 4, 5}) {
+    SyntheticDrive drive({pair_picture(1, 2), pair_picture(3, 4), pair_picture(9, 2)});
+    const std::array<FrameSource*, 1> training{&drive};
+    int calls = 0;
+    const auto stop = [&] {
+      if (++calls == last) throw std::runtime_error("enough");
+    };
+    EXPECT_THROW(ChangeRemoval(gray_net(), training, 1, stop), std::runtime_error) << last;
+    EXPECT_EQ(calls, last);
+  }
+}
+
 TEST(ChangeRemoval, RefusesWhatItCannotLearnFrom) {
   using test::says;
   const auto fault = [](const std::vector<cv::Mat>& pictures, std::size_t components) {

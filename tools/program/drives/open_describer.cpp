@@ -86,7 +86,8 @@ std::unique_ptr<Describer> open_patches(const opencv::ModelSettings& model) {
 std::unique_ptr<Describer> learn_removal(std::unique_ptr<opencv::DnnDescriber> net,
                                          std::span<FrameSource* const> training,
                                          std::size_t components) {
-  auto removal = std::make_unique<opencv::ChangeRemoval>(std::move(net), training, components);
+  auto removal = std::make_unique<opencv::ChangeRemoval>(std::move(net), training, components,
+                                                         stop_if_interrupted);
   if (removal->components() < components) {
     say("remove-components: the training pictures vary in {} directions only, not {}",
         removal->components(), components);

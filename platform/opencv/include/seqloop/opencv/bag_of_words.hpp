@@ -25,8 +25,8 @@ class BagOfWords : public Describer {
   /// random from a fixed seed, and how rare the words are. The same pictures give the same words.
   /// @param training drives, read to their ends; what cannot be read is left out
   /// @param words    D, from 1 to the number of features sampled
-  /// @param between  called before each picture and each round of k-means; what it throws ends the
-  ///   learning
+  /// @param between  called before each look at a picture and each round of k-means; what it throws
+  ///   ends the learning
   /// Throws SetupError: more words than features; nothing that tells the pictures apart.
   /// Work: ORB of every picture, some 25 * most_features * words distances of 256 values.
   /// Allocates: while learning 16 kB a picture and 20 MB; 36 bytes a word stay.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -23,11 +24,13 @@ class ChangeRemoval : public Describer {
   /// @param training   drives, read to their ends; what cannot be read is left out; at least
   ///   components + 1 pictures in all, at most 1,000
   /// @param components m to remove; 0 removes nothing
+  /// @param between    called before each picture and while components are computed; what it throws
+  ///   ends the learning
   /// Throws SetupError: too few or too many pictures.
   /// Work and allocations: PrincipalComponents', of N pictures of P bytes, and the N P bytes of the
   /// pictures while it learns.
   ChangeRemoval(std::unique_ptr<DnnDescriber> net, std::span<FrameSource* const> training,
-                std::size_t components);
+                std::size_t components, const std::function<void()>& between = {});
   ChangeRemoval(const ChangeRemoval&) = delete;
   ChangeRemoval& operator=(const ChangeRemoval&) = delete;
   ChangeRemoval(ChangeRemoval&&) = delete;
