@@ -134,7 +134,9 @@ Faults validate(const MatcherConfig& config) {
     faults.push_back({"full_map", "differences are enhanced by places that would go",
                       "set full_map to refuse, or switch enhance off"});
   }
-  check_range(faults, "exclude", config.exclude, 1, many);
+  // Closing loops, the detector remembers that many steps: 8 MB at most, half a day of a camera.
+  check_range(faults, "exclude", config.exclude, 1,
+              config.use == Use::close_loops ? 1'000'000 : many);
   check_range(faults, "frames_at_once", config.frames_at_once, 1,
               MatcherConfig::most_frames_at_once);
   check_range(faults, "standardisation.prior_frames", config.standardisation.prior_frames, 1, many);

@@ -107,7 +107,8 @@ struct MatcherConfig {
   /// L: every L-th matched frame searches all rows, where relocalising is off; >= 1
   std::size_t reinit = 450;
   Relocalising relocalising{};  ///< A- and O-: how places outside the ranges are found
-  /// Closing loops, those of a drive to be localised in too: newest frames that are no places; >= 1
+  /// Closing loops, those of a drive to be localised in too: newest frames that are no places; >=
+  /// 1, closing loops 1 .. 1,000,000
   std::size_t exclude = 20;
   FullMap full_map = FullMap::refuse;  ///< closing loops: what a full map does
   Standardisation standardisation{};
