@@ -209,8 +209,10 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
   expect_done("describe --source drive --out drive.npy");
   expect_refused("match --query drive.npy --reference with.seqloop --out m.csv", "to localise in");
   for (const char* how : {"", " --read-only"}) {
-    expect_refused("match --query drive.npy --out m.csv --map with.seqloop" + std::string(how),
-                   "; `seqloop run --source PICTURES --map FILE` describes them");
+    expect_refused(
+        "match --query drive.npy --out m.csv --map with.seqloop" + std::string(how),
+        "; `seqloop run --source PICTURES --map FILE` describes them as the map's were, and a "
+        ".npy file does not say how its own were");
   }
   expect_done("run --source drive --map with.seqloop --session two --out again.jsonl");
   EXPECT_EQ(info("with.seqloop")["thumbnails"], 80);

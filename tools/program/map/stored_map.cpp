@@ -36,7 +36,8 @@ std::string form_of(const MatcherConfig& config) {
 }
 
 constexpr const char* of_pictures =
-    "`seqloop run --source PICTURES --map FILE` describes them as the map's were";
+    "`seqloop run --source PICTURES --map FILE` describes them as the map's were, and a .npy file "
+    "does not say how its own were";
 
 /// Whether a map was made from pictures, and what is matched was described before.
 bool wants_pictures(const sqlite::MapForm& map, const sqlite::MapForm& drive) {
