@@ -195,6 +195,8 @@ TEST_F(BadInput, FaultsOfInputsAreToldBesideThoseOfOutputs) {
       "poses.tum --map no/m.seqloop",
       {"none: does not exist", "no/r.jsonl: its folder", "good.npy/p: ", "no/g.g2o: its folder",
        "poses.tum: line 1 is no pose", "no/m.seqloop: its folder does not exist; create "});
+  expect_refused("run --source none --pose-graph g.g2o --odometry " + file("poses.tum"),
+                 {"none: does not exist", "poses.tum: line 1 is no pose"});
   expect_refused("run --source good.npy --out no/r.jsonl --map none.seqloop --read-only",
                  {"no/r.jsonl: ", "none.seqloop: there is no such map"});
   expect_refused("report none.jsonl --summary none.json --out no/p.html",

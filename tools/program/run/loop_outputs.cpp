@@ -61,8 +61,8 @@ LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, bo
   }
   if (!wants_graph && !settings.odometry.empty()) {
     faults.push_back({"odometry", "nothing is made of it", "add --pose-graph FILE.g2o"});
-  } else if (!settings.odometry.empty() && !settings.odometry.starts_with('/')) {
-    // It is no topic. When its times begin, the drive says later.
+  } else if (!settings.odometry.empty() && !listens_to_odometry(settings, true)) {
+    // It can be no topic. When its times begin, the drive says later.
     collect(faults, [&] {
       static_cast<void>(parse_tum(files::read_text(settings.odometry), settings.odometry, 0.0));
     });
