@@ -237,6 +237,37 @@ class Arrays(unittest.TestCase):
             self.assertLess(len(str(raised.exception)), 300)
         self.assertEqual(self.detector.step(None).newest, 0, "what was refused is no frame")
 
+    def test_arguments_of_another_type_are_told_in_a_sentence(self) -> None:
+        describer = seqloop.Describer()
+        rows = self.query.tolist()
+        whole = "it must be a whole number"
+        for call, words in (
+                (lambda: seqloop.PlaceMap("many", 48), f"max_places: {whole}, not 'many'"),
+                (lambda: seqloop.PlaceMap(200, 48.5), f"descriptor_size: {whole}, not 48.5"),
+                (lambda: seqloop.PlaceMap(200, 2**64), f"descriptor_size: {whole}, not {2**64}"),
+                (lambda: seqloop.PlaceMap(200, 48, "yes"), "close_loops: it must be True or False, not 'yes'"),
+                (lambda: seqloop.PlaceMap(200, 48, ds=rows[0]), "ds: a value of type list is not of its type"),
+                (lambda: seqloop.PlaceMap(200, 48, ds=self.query), "ds: a value of type ndarray is not of its type"),
+                (lambda: seqloop.PlaceMap.open(3, 48), "map: it must be the name of a file or folder, not 3"),
+                (lambda: seqloop.PlaceMap.open("m", rows), f"descriptor_size: {whole}, not a value of type list"),
+                (lambda: seqloop.PlaceMap.open("m", 48, "9"), f"max_places: {whole}, or None, not '9'"),
+                (lambda: seqloop.PlaceMap.open("m", 48, describer=3), "describer: it must be text, not 3"),
+                (lambda: self.places.where(-1), f"place: {whole} of 0 or more, not -1"),
+                (lambda: seqloop.Detector(rows), "map: it must be a seqloop.PlaceMap, not a value of type list"),
+                (lambda: seqloop.Detector(None), "map: it must be a seqloop.PlaceMap, not None"),
+                (lambda: self.detector.step(None, "now"), "time_s: it must be a number, or None, not 'now'"),
+                (lambda: self.detector.skip(-1), f"frames: {whole} of 0 or more, not -1"),
+                (lambda: describer.describe_drive(rows), "source: it must be the name of a file or folder, not a v"),
+                (lambda: describer.describe_drive("day", 1.5), f"frames: {whole} of 0 or more, not 1.5"),
+                (lambda: seqloop.map_info(None), "file: it must be the name of a file or folder, not None"),
+                (lambda: seqloop.check_map(rows), "file: it must be the name of a file or folder, not a value"),
+                (lambda: seqloop.merge_maps("a", "b"), "maps: it must be a list of names of files, not 'a'"),
+                (lambda: seqloop.merge_maps(["a", 3], "b"), r"maps: it must be a list of names of files, not \['a', 3\]"),
+                (lambda: seqloop.merge_maps(["a"], 3), "out: it must be the name of a file or folder, not 3")):
+            with self.assertRaisesRegex((TypeError, seqloop.SetupError), "^" + words) as raised:
+                call()  # type: ignore[no-untyped-call]
+            self.assertLess(len(str(raised.exception)), 200)
+
     def test_read_only_arrays_are_read_where_they_lie(self) -> None:
         frozen = self.query.copy()
         frozen.flags.writeable = False

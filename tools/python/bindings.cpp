@@ -76,6 +76,7 @@ std::optional<std::string> value_text(const py::handle& value, ValueKind kind) {
   if (kind == ValueKind::flag) return std::nullopt;
   if (py::isinstance<py::str>(value)) return bytes(value);
   if (is_list(value)) {
+    if (kind == ValueKind::count || kind == ValueKind::number) return std::nullopt;
     std::string text;
     for (const py::handle& each : value) {
       const auto one = is_list(each) ? std::nullopt : value_text(each, kind);
@@ -114,7 +115,7 @@ Faults set_options(const OptionTable& options, const py::kwargs& given) {
     }
     const auto text = value_text(value, option->kind);
     if (!text) {
-      faults.push_back({name, py::repr(value).cast<std::string>() + " is not of its type",
+      faults.push_back({name, shown(value) + " is not of its type",
                         option->kind == ValueKind::flag ? "give True or False" : option->help});
       continue;
     }
@@ -166,6 +167,13 @@ void translate_faults(const py::object& error) {
 
 std::string type_name(const py::handle& value) {
   return py::type::handle_of(value).attr("__name__").cast<std::string>();
+}
+
+std::string shown(const py::handle& value) {
+  constexpr std::size_t most = 60;
+  auto text = py::repr(value).cast<std::string>();
+  const bool brief = text.size() <= most && text.find('\n') == std::string::npos;
+  return brief ? text : "a value of type " + type_name(value);
 }
 
 Array array_of(const Given& given, const std::string& name, const std::string& type,

@@ -4,13 +4,16 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -28,8 +31,53 @@ struct Given {
   pybind11::object value;
 };
 
+/// The name of an argument, as part of a type.
+template <std::size_t size>
+struct ArgumentName {
+  char text[size] = {};  // NOLINT(*-avoid-c-arrays): what a literal is
+
+  // NOLINTNEXTLINE(google-explicit-constructor,*-avoid-c-arrays)
+  constexpr ArgumentName(const char (&literal)[size]) { std::copy_n(literal, size, text); }
+};
+
+/// Any other argument. One of a wrong type is told in a sentence, too.
+template <class Value, ArgumentName name>
+struct Argument {
+  Value value{};
+
+  operator const Value&() const noexcept { return value; }  // NOLINT(google-explicit-constructor)
+};
+
+/// What an argument must be.
+template <class Value>
+[[nodiscard]] std::string wanted() {
+  if constexpr (requires { typename Value::element_type; }) {
+    return "a seqloop." + pybind11::type::of<typename Value::element_type>()
+                              .attr("__name__")
+                              .template cast<std::string>();
+  } else if constexpr (requires(Value value) { value.has_value(); }) {
+    return wanted<typename Value::value_type>() + ", or None";
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return "True or False";
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    return "a number";
+  } else if constexpr (std::is_integral_v<Value>) {
+    return std::is_signed_v<Value> ? "a whole number" : "a whole number of 0 or more";
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return "text";
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    return "the name of a file or folder";
+  } else {
+    static_assert(std::is_same_v<Value, std::vector<std::filesystem::path>>);
+    return "a list of names of files";
+  }
+}
+
 /// What a value is, in a word.
 [[nodiscard]] std::string type_name(const pybind11::handle& value);
+
+/// A value as Python writes it or, where that is long, its type.
+[[nodiscard]] std::string shown(const pybind11::handle& value);
 
 /// The array that was given. @param name of the argument
 /// @param type    what its values should be, `float32`
@@ -108,6 +156,26 @@ class type_caster<seqloop::python::Given> {
 
   bool load(handle given, bool /*convert*/) {
     value.value = reinterpret_borrow<object>(given);
+    return true;
+  }
+};
+
+template <class Value, seqloop::python::ArgumentName argument>
+class type_caster<seqloop::python::Argument<Value, argument>> {
+ public:
+  using Taken = seqloop::python::Argument<Value, argument>;
+  PYBIND11_TYPE_CASTER(Taken, make_caster<Value>::name);
+
+  /// Throws type_error. What was made null by None would be used.
+  bool load(handle given, bool convert) {
+    make_caster<Value> inner;
+    bool taken = inner.load(given, convert);
+    if constexpr (requires { typename Value::element_type; }) taken = taken && !given.is_none();
+    if (!taken) {
+      throw type_error(std::string(argument.text) + ": it must be " +
+                       seqloop::python::wanted<Value>() + ", not " + seqloop::python::shown(given));
+    }
+    value.value = cast_op<Value>(std::move(inner));
     return true;
   }
 };

@@ -44,7 +44,9 @@ class Stepper {
     map_->begin();
   }
 
-  Report step(const std::optional<Given>& descriptor, std::optional<double> time_s) {
+  Report step(const std::optional<Given>& descriptor,
+              const Argument<std::optional<double>, "time_s">& given) {
+    const std::optional<double>& time_s = given;
     std::span<const float> values;
     if (descriptor) values = python::descriptor(*descriptor, map_->places().descriptor_size());
     if (time_s && !std::isfinite(*time_s)) {
@@ -76,7 +78,7 @@ class Stepper {
     return report;
   }
 
-  void skip(std::uint64_t frames) {
+  void skip(const Argument<std::uint64_t, "frames">& frames) {
     const Unlocked unlocked;
     const std::scoped_lock lock(guard());
     static_cast<void>(kept_on());
@@ -180,6 +182,7 @@ void check_numpy() {
 
 PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
+  using seqloop::python::Argument;
   using seqloop::python::Map;
   using seqloop::python::outliving;
   using seqloop::python::Stepper;
@@ -198,13 +201,16 @@ PYBIND11_MODULE(_core, module) {
       "empty and takes its places from the drive that the detector steps through.\n"
       "settings: as seqloop.settings() lists them.\n"
       "Errors: SetupError, a ValueError with every fault at once.")
-      .def(py::init<std::int64_t, std::int64_t, bool, const py::kwargs&>(), py::arg("max_places"),
-           py::arg("descriptor_size"), py::arg("close_loops") = false)
+      .def(py::init<const Argument<std::int64_t, "max_places">&,
+                    const Argument<std::int64_t, "descriptor_size">&,
+                    const Argument<bool, "close_loops">&, const py::kwargs&>(),
+           py::arg("max_places"), py::arg("descriptor_size"), py::arg("close_loops") = false)
       .def_static(
           "open",
-          [](const std::filesystem::path& map, std::int64_t size,
-             std::optional<std::int64_t> places, const std::string& describer,
-             const py::kwargs& settings) {
+          [](const Argument<std::filesystem::path, "map">& map,
+             const Argument<std::int64_t, "descriptor_size">& size,
+             const Argument<std::optional<std::int64_t>, "max_places">& places,
+             const Argument<std::string, "describer">& describer, const py::kwargs& settings) {
             return Map::open(map, size, places, describer, settings);
           },
           py::arg("map"), py::arg("descriptor_size"), py::arg("max_places") = py::none(),
@@ -225,7 +231,7 @@ PYBIND11_MODULE(_core, module) {
           "Errors: SetupError: held by another process, of another form, damaged, no space, …")
       .def(
           "where",
-          [](Map& map, std::uint64_t place) {
+          [](Map& map, const Argument<std::uint64_t, "place">& place) {
             const auto [session, frame] = map.where(place);
             return std::pair(seqloop::python::readable(session), frame);
           },
@@ -257,7 +263,7 @@ PYBIND11_MODULE(_core, module) {
       "map: keeps it alive. To localise: filled; several detectors may share it,\n"
       "one a thread. To close loops: empty, and this detector's alone.\n"
       "Errors: SetupError.")
-      .def(py::init<std::shared_ptr<Map>>(), py::arg("map"))
+      .def(py::init<const Argument<std::shared_ptr<Map>, "map">&>(), py::arg("map"))
       .def("step", outliving(&Stepper::step), py::arg("descriptor").none(true),
            py::arg("time_s") = py::none(),
            "Takes the next frame, and answers each frame whose answer is due.\n\n"

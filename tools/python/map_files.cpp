@@ -18,7 +18,10 @@ namespace {
 
 namespace py = pybind11;
 
-py::dict info(const std::filesystem::path& file) {
+using File = Argument<std::filesystem::path, "file">;
+
+py::dict info(const File& given) {
+  const std::filesystem::path& file = given;
   const sqlite::MapFile map = sqlite::MapFile::read_only(file);
   const sqlite::MapForm& form = map.form();
   using namespace py::literals;
@@ -32,7 +35,7 @@ py::dict info(const std::filesystem::path& file) {
                   "describer"_a = readable(form.describer), "sessions"_a = sessions);
 }
 
-py::list check(const std::filesystem::path& file) {
+py::list check(const File& file) {
   const std::vector<std::string> found = [&] {
     const Unlocked unlocked;
     return sqlite::MapFile::read_only(file).check();
@@ -42,8 +45,9 @@ py::list check(const std::filesystem::path& file) {
   return wrong;
 }
 
-std::vector<std::uint64_t> merge(const std::vector<std::filesystem::path>& maps,
-                                 const std::filesystem::path& out) {
+std::vector<std::uint64_t> merge(const Argument<std::vector<std::filesystem::path>, "maps">& maps,
+                                 const Argument<std::filesystem::path, "out">& given) {
+  const std::filesystem::path& out = given;
   if (out.empty()) throw SetupError({"out", "its name is empty", "name a file"});
   const Unlocked unlocked;
   return program::merge_maps(maps, out, look_for_interruption);

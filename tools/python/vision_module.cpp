@@ -80,7 +80,9 @@ class PictureDescriber {
     return descriptor;
   }
 
-  py::array_t<float> describe_drive(const std::filesystem::path& source, std::size_t frames) {
+  py::array_t<float> describe_drive(const Argument<std::filesystem::path, "source">& given,
+                                    const Argument<std::size_t, "frames">& frames) {
+    const std::filesystem::path& source = given;
     std::vector<float> rows;
     {
       const Unlocked unlocked;
