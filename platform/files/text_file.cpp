@@ -7,7 +7,7 @@
 
 namespace seqloop::files {
 
-std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+std::string read_bytes(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   const std::string shown = path.string();
   std::error_code error;
   const bool there = std::filesystem::exists(path, error);
@@ -31,6 +31,15 @@ std::string read_text(const std::filesystem::path& path, std::uintmax_t most_byt
   std::ifstream stream(path, std::ios::binary);
   stream.read(text.data(), static_cast<std::streamsize>(bytes));
   if (!stream) throw SetupError(Fault{shown, "cannot be read", "check its permissions"});
+  return text;
+}
+
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  std::string text = read_bytes(path, most_bytes);
+  if (text.find('\0') != std::string::npos) {
+    throw SetupError(
+        Fault{path.string(), "is no text in UTF-8: it holds zeros", "give a text file"});
+  }
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   return text;
 }

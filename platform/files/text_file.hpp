@@ -7,9 +7,15 @@
 
 namespace seqloop::files {
 
+constexpr std::uintmax_t usual_most_bytes = std::uintmax_t{64} << 20U;
+
+/// A whole file. Throws SetupError: not there, not a regular file, unreadable, above `most_bytes`.
+[[nodiscard]] std::string read_bytes(const std::filesystem::path& path,
+                                     std::uintmax_t most_bytes = usual_most_bytes);
+
 /// A whole text file, without the byte-order mark that some editors put in front.
-/// Throws SetupError: not there, not a regular file, unreadable, above `most_bytes`.
+/// Throws SetupError: as read_bytes, and what holds zeros, as UTF-16 and .npy files do.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path,
-                                    std::uintmax_t most_bytes = std::uintmax_t{64} << 20U);
+                                    std::uintmax_t most_bytes = usual_most_bytes);
 
 }  // namespace seqloop::files

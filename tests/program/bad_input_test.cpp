@@ -177,6 +177,27 @@ TEST_F(BadInput, DrivesThatSayNothingAreAnsweredAndNotAccepted) {
   }
 }
 
+TEST_F(BadInput, WhatIsWrongIsToldOnce) {
+  std::filesystem::create_directory(file("folder"));
+  folder_.write("gaps.csv", "from,to\n0,1\n");
+  const std::string drive = "run --source good.npy --out r.jsonl --exclude 20 ";
+  for (const auto& [arguments, said] : {
+           std::pair{drive + "--fps 0", "fps: a frame rate is between 0.001 and 1000000\n"},
+           {drive + "--realtime-priority 300", "realtime-priority: it must be 0 to 98\n"},
+           {"describe --source good.npy --out d.npy --remove-components 5000 --training folder",
+            "remove-components: 5000 is more than 999\n"},
+           {"stills --source good.npy --out d --leave-out gaps.csv",
+            "leave-out: gaps.csv: no column 'from_s' in its header line\n"
+            "seqloop: leave-out: gaps.csv: no column 'to_s' in its header line\n"},
+       }) {
+    expect_refused(arguments, {said});
+    const std::string err = run(arguments).err;
+    for (const char* again : {"frame rate: ", "real-time", "nothing is learned"}) {
+      EXPECT_EQ(err.find(again), std::string::npos) << err;
+    }
+  }
+}
+
 TEST_F(BadInput, EveryFaultAtOnce) {
   expect_match_refused(
       "--reference none.npy --query good.npy --ds 0 --k 0 --vmin 2 --num x --what 1",
@@ -447,6 +468,8 @@ TEST_F(BadInput, TextFilesThatAreNone) {
     expect_refused("eval --matches " + text, {text});
     expect_refused("eval --matches none --truth " + text, {text});
   }
+  expect_match_refused(match + "good.npy", {"good.npy: is no text in UTF-8"});
+  expect_refused("eval --matches good.npy --truth good.npy", {"good.npy: is no text in UTF-8"});
   std::string deep = "[a";
   for (int level = 0; level < 100'000; ++level) deep += ".a";
   folder_.write("deep.toml", deep + "]\n");

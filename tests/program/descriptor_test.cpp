@@ -140,6 +140,9 @@ TEST_F(Descriptor, BadInput) {
   expect_refused("--descriptor words --words 20001 --training drive", {"20001 is more than 20000"});
   expect_refused("--descriptor words --words 20000 --training drive", {"words: 20000", "11"});
   expect_refused("--descriptor words --words 0 --training drive", {"words: 0"});
+  EXPECT_EQ(run("describe --source drive --out d.npy --descriptor words --words 0 --training drive")
+                .err.find("learning"),
+            std::string::npos);
   expect_refused("--remove-components 11 --training drive",
                  {"11 pictures that can be read and 1 that cannot", "fewer"});
   expect_refused("--remove-components -1 --training drive,,drive", {"'-1'", "no name"});

@@ -84,7 +84,7 @@ void keep_result(const Result& result, const std::filesystem::path& file) {
 
 std::optional<Result> kept_result(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
-  return parse_result(files::read_text(file));
+  return parse_result(files::read_bytes(file));
 }
 
 std::optional<Result> parse_result(std::string_view text) {

@@ -317,7 +317,7 @@ class Runner {
   [[nodiscard]] std::optional<std::string> kept_picture(const RunSpec& run,
                                                         const Result& result) const {
     try {
-      std::string png = files::read_text(file(run, "png"));
+      std::string png = files::read_bytes(file(run, "png"));
       if (fingerprint(png) == result.matrix) return png;
     } catch (const SetupError&) {  // it is made anew
     }

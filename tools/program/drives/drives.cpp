@@ -98,16 +98,18 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.add({"remove-components", ValueKind::count,
                "Change Removal: principal components of the training drives to remove [0]",
                [&settings](std::string_view value) {
+                 settings.remove_components.emplace();  // asked for, if wrongly
                  settings.remove_components = parse_count_to(value, 999);
                }});
   options.section("Source");
   options.add({"fps", ValueKind::number,
                "frames a second: of an image folder; of a camera, at least [10]",
                [&settings](std::string_view value) {
-                 settings.fps = parse_number(value);
-                 if (!(settings.fps >= 1e-3 && settings.fps <= 1e6)) {
-                   throw std::invalid_argument("it must be between 0.001 and 1000000");
+                 const double fps = parse_number(value);
+                 if (!(fps >= 1e-3 && fps <= 1e6)) {
+                   throw std::invalid_argument("a frame rate is between 0.001 and 1000000");
                  }
+                 settings.fps = fps;
                }});
   options.text("topic", settings.topic, "of a bag: which pictures [the only topic that has any]");
 }

@@ -54,6 +54,8 @@ void check(const DriveSettings& settings, bool training_given, Faults& faults) {
   }
   if (settings.words && kind != "words") {
     faults.push_back({"words", "there is no vocabulary", "--descriptor words"});
+  } else if (settings.words == 0U) {
+    faults.push_back({"words", "0 tell no picture from another", "ask for at least 1"});
   }
   if (removes(settings) && (kind == "patches" || kind == "words")) {
     faults.push_back({"remove-components", "works around a net, and " + kind + " have none",

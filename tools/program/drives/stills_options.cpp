@@ -69,13 +69,7 @@ Crop parse_crop(std::string_view text) {
 
 std::vector<Interval> parse_intervals(const std::string& text) {
   std::error_code error;
-  if (std::filesystem::exists(text, error)) {
-    try {
-      return read_intervals(text);
-    } catch (const SetupError& fault) {
-      throw std::invalid_argument(fault.what());
-    }
-  }
+  if (std::filesystem::exists(text, error)) return read_intervals(text);
   try {
     std::vector<Interval> intervals;
     for (const std::string_view part : split(text, ',')) intervals.push_back(parse_interval(part));

@@ -173,6 +173,10 @@ Faults OptionTable::set(const Option& option, std::string_view value) {
     option.set(value);
   } catch (const std::invalid_argument& why) {
     return {{option.name, why.what()}};
+  } catch (const SetupError& error) {  // of the file that it names
+    Faults faults = error.faults();
+    for (Fault& fault : faults) fault = {option.name, fault.what + ": " + fault.why, fault.remedy};
+    return faults;
   }
   return {};
 }

@@ -43,10 +43,9 @@ void add_real_time_options(OptionTable& options, RealTimeSettings& settings) {
                "SCHED_FIFO priority of a live loop, 1 to 98; its capture thread gets one more [0: "
                "ordinary scheduling]",
                [&settings](std::string_view value) {
-                 settings.priority = parse_count(value);
-                 if (settings.priority > highest_priority) {
-                   throw std::invalid_argument("it must be 0 to 98");
-                 }
+                 const std::size_t priority = parse_count(value);
+                 if (priority > highest_priority) throw std::invalid_argument("it must be 0 to 98");
+                 settings.priority = priority;
                }});
   options.add({"realtime-cpus", ValueKind::text,
                "CPUs that a live loop may run on, from 0, with commas between [any]",
