@@ -229,6 +229,22 @@ TEST_F(Live, AConfigurationFileSetsTheBudget) {
   EXPECT_EQ(summary["overload"]["after"], 9);
 }
 
+TEST_F(Live, OfAnInterruptedReportNothingStays) {
+  write_drive("q.npy", 60);
+  ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --out r.jsonl").exit_code, 0);
+  // A run without end.
+  folder_.write("stop.sh",
+                "mkfifo run && { while cat r.jsonl; do :; done >run 2>/dev/null & }\n"
+                "env --default-signal=INT \"$@\" 2>stderr.txt &\n"
+                "until ls -d .p.html.partial-* >/dev/null 2>&1; do sleep 0.01; done\n"
+                "kill -INT $!; wait $!\n");
+  const std::string command = "cd '" + folder_.path().string() +
+                              "' && sh stop.sh '" SEQLOOP_BINARY "' report run --out p.html";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_EQ(test::read_all(file("stderr.txt")), "seqloop: interrupted: nothing has been written\n");
+  EXPECT_EQ(listing().find("p.html"), std::string::npos) << listing();
+}
+
 TEST_F(Live, TheReportIsOnePage) {
   write_drive("q.npy", 60);
   ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --fps 500 --pace live --out r.jsonl "

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "program/options/verb.hpp"
+#include "program/process/interruption.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "program/watch/report_page.hpp"
 #include "seqloop/files/output_file.hpp"
@@ -60,6 +61,7 @@ nlohmann::ordered_json conditions(const ReportSettings& settings, Faults& faults
 }
 
 void report(const ReportSettings& settings, Faults faults) {
+  take_interruptions();
   if (settings.run.empty())
     faults.push_back({"run", "not given", "name what `seqloop run --out` wrote"});
   if (settings.words > 1)

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "program/process/interruption.hpp"
 #include "program/process/json_text.hpp"
 #include "program/watch/page_files.hpp"
 #include "program/watch/run_view.hpp"
@@ -149,6 +150,7 @@ std::string report_page(std::istream& lines, const std::string& name, Json run) 
   Lines taken(view);
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
+    stop_if_interrupted();
     ++number;
     try {
       taken.take(Json::parse(line));
