@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sqlite/database.hpp"
 
+#include <array>
 #include <limits>
 
 namespace seqloop::sqlite {
@@ -24,6 +25,18 @@ std::uint64_t most_steps(sqlite3* handle) {
   }
   constexpr std::uint64_t a_byte = 10;
   return a_byte * bytes;
+}
+
+/// The versions in the header, to write and to read: 2 while there may be a log, otherwise 1. Read
+/// by SQLite's own file: closing another one would end the process's locks.
+bool was_closed(sqlite3* handle) {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(handle, "main", SQLITE_FCNTL_FILE_POINTER, static_cast<void*>(&file));
+  constexpr sqlite3_int64 versions_at = 18;
+  std::array<unsigned char, 2> versions{};
+  return file != nullptr && file->pMethods != nullptr &&
+         file->pMethods->xRead(file, versions.data(), versions.size(), versions_at) == SQLITE_OK &&
+         versions == std::array<unsigned char, 2>{1, 1};
 }
 
 }  // namespace
@@ -98,6 +111,14 @@ int Database::stop_circles(void* self) {
   if (database.steps_ <= database.most_steps_) return 0;
   database.most_steps_ = most_steps(database.handle_);  // it may have grown
   return database.steps_ <= database.most_steps_ ? 0 : 1;
+}
+
+bool Database::is_beside_foreign_log() const {
+  std::error_code error;
+  const char* const log = sqlite3_filename_wal(sqlite3_db_filename(handle_, "main"));
+  // Asked twice: somebody may open or close it meanwhile.
+  return was_closed(handle_) && std::filesystem::file_size(log, error) > 0 && !error &&
+         was_closed(handle_);
 }
 
 void Database::execute(const std::string& sql) {

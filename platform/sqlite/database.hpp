@@ -51,6 +51,10 @@ class Database {
   [[nodiscard]] std::int64_t number(std::string_view sql);
   [[nodiscard]] std::string text(std::string_view sql);
 
+  /// Whether the file says that it was closed, so that it has no log, and yet one lies beside it:
+  /// that is another file's, which had this name. SQLite would put its pages into this one.
+  [[nodiscard]] bool is_beside_foreign_log() const;
+
   [[nodiscard]] sqlite3* handle() const noexcept { return handle_; }
   /// Throws the newest error of the connection, if the code is one.
   void check(int code) const;

@@ -59,6 +59,15 @@ void check_kind(const fs::path& path, Database& database) {
   }
 }
 
+/// Before anything is read. Throws SetupError.
+void check_log(const fs::path& path, const Database& database) {
+  if (!database.is_beside_foreign_log()) return;
+  throw SetupError({path.string() + "-wal",
+                    "is not the log of the map beside it, but of one that had its name and was "
+                    "not closed: the two would be mixed",
+                    "remove it; or put the map that it belongs to back, to have what is in both"});
+}
+
 void check_file(const fs::path& path) {
   struct stat status {};
   const std::string name = path.string();
@@ -175,6 +184,7 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
     auto state = std::make_unique<State>(path, std::move(holder),
                                          SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     Database& database = state->database;
+    check_log(path, database);
     // In the log, FULL would do; EXTRA is for the moments in which there is none. What is deleted
     // is overwritten: it is forgotten, and `recover` does not bring it back.
     database.execute(
@@ -211,6 +221,7 @@ MapFile MapFile::read_only(const fs::path& path) {
   const auto begin = [&](const char* vfs) {
     auto state = std::make_unique<State>(path, Holder(), SQLITE_OPEN_READONLY, vfs);
     // Where nobody can write, nobody does: no locks are needed, and the log is looked up in memory.
+    check_log(path, state->database);
     if (vfs != nullptr) state->database.execute("PRAGMA locking_mode = EXCLUSIVE");
     // From here on, what is read is of one moment.
     state->database.execute("BEGIN");

@@ -167,6 +167,7 @@ class WithLog {
       return !error && size > 0;
     };
     if (!is_used("-wal") && !is_used("-journal")) return;
+    if (has_foreign_log(in)) return;
     path_ = beside.string() + ".copy";
     copied_ = true;
     for (const char* tail : {"", "-wal", "-journal"}) {
@@ -194,6 +195,14 @@ class WithLog {
   [[nodiscard]] const fs::path& path() const { return path_; }
 
  private:
+  static bool has_foreign_log(const fs::path& path) {
+    try {
+      return Database(path, SQLITE_OPEN_READONLY).is_beside_foreign_log();
+    } catch (const DatabaseError&) {
+      return false;
+    }
+  }
+
   fs::path path_;
   bool copied_ = false;
 };

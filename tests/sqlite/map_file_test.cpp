@@ -15,6 +15,7 @@
 #include <set>
 
 #include "expect_setup_error.hpp"
+#include "seqloop/sqlite/recover.hpp"
 #include "sqlite/checksum.hpp"
 #include "sqlite/pages_ahead.hpp"
 #include "sqlite/recording_vfs.hpp"
@@ -726,6 +727,29 @@ TEST_F(Map, IsWrittenByOneProcessAtATime) {
   }
   MapFile map = open();
   EXPECT_EQ(map.sessions()[1].frames, 48U);
+}
+
+TEST_F(Map, TakesNothingFromTheLogOfOneThatHadItsName) {
+  make();
+  const std::string before = content();
+  {
+    const Other other([this](const auto& done) {
+      MapFile map = MapFile::open(file("killed"), test::sample_form());
+      test::save_sample(map, map.begin_session("lost", 7, ""), 0, 5);
+      done(true);
+    });
+    ASSERT_TRUE(other.well());
+  }
+  EXPECT_NE(content(MapFile::read_only(file("killed"))), before) << "with its own log";
+  fs::copy_file(file(), file("killed"), fs::copy_options::overwrite_existing);
+  const auto refusal = [](const std::string& message) {
+    return says(message, "killed-wal: is not the log of the map beside it");
+  };
+  EXPECT_TRUE(refusal(setup_error([&] { (void)MapFile::read_only(file("killed")); })));
+  EXPECT_TRUE(refusal(setup_error([&] { (void)MapFile::open(file("killed"), {}); })));
+  EXPECT_EQ(sqlite::recover(file("killed"), file("out")).places, 80U);
+  fs::remove(file("killed-wal"));
+  EXPECT_EQ(content(MapFile::read_only(file("killed"))), before);
 }
 
 TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {
