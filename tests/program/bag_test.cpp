@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bags through the real program: the same answers as from the folder, what a bag holds, refusals.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -71,6 +72,31 @@ TEST_F(Bags, TheSameAnswersAsFromTheFolder) {
   EXPECT_EQ(facts["topics"][0]["messages"], accepted);
   EXPECT_GE(facts["start_ns"], start);
   EXPECT_TRUE(facts["notes"].empty());
+}
+
+TEST_F(Bags, WhatIsWrongWithAllPicturesIsSaidOnce) {
+  test::McapBytes bag;
+  bag.start().schema(1, "sensor_msgs/msg/Image").channel(1, 1, "/camera");
+  for (int i = 0; i < 50; ++i) {
+    const std::int64_t time = start + i * std::int64_t{100'000'000};
+    const char* const encoding = i < 40 ? "bayer_rggb8" : "32FC1";
+    bag.message(1, static_cast<std::uint64_t>(time),
+                test::image_message(time, 8, 6, encoding, 32, std::vector<std::uint8_t>(192)));
+  }
+  bag.finish();
+  folder_.write("bayer.mcap", std::string(bag.bytes.begin(), bag.bytes.end()));
+  for (const std::string verb :
+       {"run --source bayer.mcap --ds 4 --out o.jsonl", "describe --source bayer.mcap --out d.npy",
+        "run --source drive --reference bayer.mcap --ds 4 --out o.jsonl",
+        "stills --source bayer.mcap --every-s .1 --out stills"}) {
+    const test::Outcome outcome = run(verb);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_LT(std::ranges::count(outcome.err, '\n'), 20) << verb << outcome.err;
+    for (const char* word : {"frame 0: pictures of the encoding 'bayer_rggb8' are not read",
+                             "frame 1: the same", "frame 40: pictures of the encoding '32FC1'"}) {
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << verb << outcome.err;
+    }
+  }
 }
 
 TEST_F(Bags, LoopsSayOfWhichSessionTheirPlacesAre) {

@@ -54,7 +54,8 @@ DescribedCount describe_drive(const std::string& name, FrameSource& source, Desc
     if (described.descriptor.empty()) {
       std::ranges::fill(descriptor, 0.0F);
       ++count.unreadable;
-      progress.tell(fmt::format("{}: frame {}: {}", name, frame.index, described.fault));
+      progress.tell_fault(fmt::format("{}: frame {}", name, frame.index), frame.index,
+                          described.fault);
     } else if (described.blank) {
       ++count.blank;
     }

@@ -53,7 +53,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
     stop_if_interrupted();
     const auto [descriptor, fault, _] = describe(grab, frame, describer, buffer);
     if (descriptor.empty()) {
-      progress.tell(fmt::format("reference frame {}: {}", frame.index, fault));
+      progress.tell_fault(fmt::format("reference frame {}", frame.index), frame.index, fault);
     } else {
       ++readable;
       if (look) look(frame);

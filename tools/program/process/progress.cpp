@@ -34,6 +34,15 @@ void Progress::tell(std::string_view message) {
   say("{}", message);
 }
 
+void Progress::tell_fault(std::string_view name, std::uint64_t index, std::string_view fault) {
+  alike_ = fault == fault_ && index == fault_index_ + 1 ? alike_ + 1 : 0;
+  fault_ = fault;
+  fault_index_ = index;
+  if (alike_ == 0) tell(fmt::format("{}: {}", name, fault));
+  if (alike_ == 1)
+    tell(fmt::format("{}: the same; what follows and is the same, too, is not told", name));
+}
+
 void Progress::done() {
   if (shown_) say_raw(clear_line);
 }

@@ -23,6 +23,11 @@ class Progress {
   /// Prints a line of its own, as `seqloop: MESSAGE`, terminal or not.
   void tell(std::string_view message);
 
+  /// Prints what is wrong with a frame. Of frames one after another of which the same is said, a
+  /// whole drive perhaps, the first two are named.
+  /// @param name what stands in front of the message; @param index of the frame, rising
+  void tell_fault(std::string_view name, std::uint64_t index, std::string_view fault);
+
   /// Clears the line.
   void done();
 
@@ -33,6 +38,9 @@ class Progress {
   std::optional<std::uint64_t> frames_;
   bool shown_ = false;
   std::uint64_t done_ = 0;
+  std::string fault_;  // told last
+  std::uint64_t fault_index_ = 0;
+  std::uint64_t alike_ = 0;  // frames before `fault_index_`, one after another, that had it, too
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point drawn_ = start_;
 };

@@ -38,7 +38,12 @@ void TroubleLog::tell_silence(const ProcessedFrame& processed, Nanoseconds now) 
 }
 
 void TroubleLog::tell_error(const ProcessedFrame& processed, Nanoseconds now) {
-  if (live_ && error_told_ && now - *error_told_ < tell_again_after) {
+  if (!live_) {
+    progress_->tell_fault(fmt::format("frame {}", processed.report.newest), processed.report.newest,
+                          processed.fault);
+    return;
+  }
+  if (error_told_ && now - *error_told_ < tell_again_after) {
     ++errors_untold_;
     return;
   }

@@ -130,7 +130,8 @@ void take_stills(const StillsVerbSettings& settings, Faults faults) {
       // An empty file is a picture that cannot be read, too, and keeps its number.
       out.write(name, "");
       ++unreadable;
-      source.progress().tell(fmt::format("frame {}: {}", source.newest(), frame.fault));
+      source.progress().tell_fault(fmt::format("frame {}", source.newest()), frame.index,
+                                   frame.fault);
     }
     table += fmt::format("{},{},{:.9g}\n", frame.index, source.newest(), frame.time_s);
   }
