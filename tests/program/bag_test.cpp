@@ -85,12 +85,13 @@ TEST_F(Bags, WhatIsWrongWithAllPicturesIsSaidOnce) {
   }
   bag.finish();
   folder_.write("bayer.mcap", std::string(bag.bytes.begin(), bag.bytes.end()));
-  for (const std::string verb :
-       {"run --source bayer.mcap --ds 4 --out o.jsonl", "describe --source bayer.mcap --out d.npy",
-        "run --source drive --reference bayer.mcap --ds 4 --out o.jsonl",
-        "stills --source bayer.mcap --every-s .1 --out stills"}) {
+  for (const std::string verb : {"run --source bayer.mcap --ds 4 --out o.jsonl --pictures drawn",
+                                 "describe --source bayer.mcap --out d.npy",
+                                 "run --source drive --reference bayer.mcap --ds 4 --out o.jsonl",
+                                 "stills --source bayer.mcap --every-s .1 --out stills"}) {
     const test::Outcome outcome = run(verb);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_FALSE(exists("drawn")) << "nothing was drawn";
     EXPECT_LT(std::ranges::count(outcome.err, '\n'), 20) << verb << outcome.err;
     for (const char* word : {"frame 0: pictures of the encoding 'bayer_rggb8' are not read",
                              "frame 1: the same", "frame 40: pictures of the encoding '32FC1'"}) {

@@ -44,6 +44,7 @@ void write_pictures(const RunSettings& settings, const PictureRecorder& recorder
   const auto reopen = [&](const std::filesystem::path& path) {
     return [&settings, path] { return open_drive(path, "source", settings.drive); };
   };
+  if (!attempt([&] { make_folder(settings.pictures); })) return;
   const bool matrix = attempt([&] { recorder.write_matrix(settings.pictures, map); });
   bool pairs = false;
   const bool looked = attempt([&] {
@@ -116,7 +117,6 @@ void run(const RunSettings& settings, Faults faults) {
   if (settings.serve.address) check(settings.serve, faults);
   RunSetup setup = set_up(settings, std::move(faults), clock);
   stop_if_interrupted();
-  if (!settings.pictures.empty()) make_folder(settings.pictures);
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
   RunConditions conditions{settings.source,       settings.reference,
