@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "core/oracle.hpp"
@@ -109,7 +110,7 @@ TEST_F(FollowedMap, PlacesAreReadOnceAndAsTheyAreSaved) {
   read_newest();
   EXPECT_GT(learnt_, 0);
   ReadPlaces saved;
-  map_->read_saved([&](const SavedPlace& place) { add(saved, place); });
+  map_->read_saved(2, [&](const SavedPlace& place) { add(saved, place); });
   ASSERT_EQ(read_.size(), saved.size());
   std::size_t visits = 0;
   for (const auto& [number, place] : saved) {
@@ -119,6 +120,23 @@ TEST_F(FollowedMap, PlacesAreReadOnceAndAsTheyAreSaved) {
     visits += place.visits.has_value();
   }
   EXPECT_GT(visits, 100U);
+}
+
+TEST_F(FollowedMap, OfMoreSessionsThanAreAskedForTheNewestAreRead) {
+  at_once_ = false;
+  for (int day = 0; day < 2; ++day) {
+    saving_.reset();
+    map_.reset();
+    static_cast<void>(drive(1'200));
+  }
+  const auto sessions = [this](std::size_t most) {
+    std::set<std::int64_t> found;
+    map_->read_saved(most, [&found](const SavedPlace& place) { found.insert(place.began_ns); });
+    return found;
+  };
+  const std::vector<std::int64_t> begun = map_->begun();
+  EXPECT_EQ(sessions(2), std::set<std::int64_t>(begun.begin(), begun.end()));
+  EXPECT_EQ(sessions(1), std::set<std::int64_t>{begun.back()});
 }
 
 TEST_F(FollowedMap, AFullMapForgetsNothingThatWasNotRead) {

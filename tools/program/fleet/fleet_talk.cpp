@@ -98,9 +98,10 @@ void FleetTalk::work() {
   if (left > 0s && wire_.others() > 0) wire_.flush(left);
 }
 
-/// Of the sessions that the file had before this run.
+/// Of the sessions that the file had before this run, the newest: robots hear no more, and this
+/// run's is one.
 void FleetTalk::tell_earlier() {
-  map_->read_saved([this](const SavedPlace& place) {
+  map_->read_saved(most_fleet_sessions - 1, [this](const SavedPlace& place) {
     if (std::ranges::find(earlier_, place.began_ns) == earlier_.end()) return;
     while (!tell(place)) {
       if (ending_) throw Ending();

@@ -95,6 +95,7 @@ void Keeper::know_sessions() {
     session.id = facts.id;
     session.frames = facts.frames;
     session.gone = true;
+    if (facts.places == 0) session.untold = facts.frames;
     const Json kept = Json::parse(facts.settings, nullptr, false);
     session.grows = kept.is_object() && kept.contains("robot") && kept.contains("session");
     session.names = {session.grows ? kept.value("robot", "") : robot_name(settings_),
@@ -294,6 +295,11 @@ void Keeper::tell(const std::function<bool()>& stop) {
   std::map<std::int64_t, Session*> telling;
   for (Session& session : sessions_) {
     if (wanted(session)) telling[session.id] = &session;
+  }
+  // Robots hear no more, and the newest are worth more to them.
+  for (; telling.size() > most_fleet_sessions; telling.erase(telling.begin())) {
+    Session& oldest = *telling.begin()->second;
+    oldest.untold = oldest.frames;
   }
   const sqlite::MapForm& form = file_->form();
   const auto size = static_cast<std::size_t>(form.place_bytes);

@@ -41,13 +41,19 @@ class SavedPictures : public PlacePictures {
 };
 
 /// Opened anew: the file itself belongs to the thread that saves.
-void read_places(const std::filesystem::path& path, const SavedPlaceReader& read) {
+void read_places(const std::filesystem::path& path, std::size_t most,
+                 const SavedPlaceReader& read) {
   const sqlite::MapFile file = sqlite::MapFile::read_only(path);
   std::map<std::int64_t, sqlite::SessionFacts> sessions;
-  for (sqlite::SessionFacts& facts : file.sessions()) sessions[facts.id] = std::move(facts);
+  for (sqlite::SessionFacts& facts : file.sessions()) {
+    if (facts.places > 0) sessions[facts.id] = std::move(facts);
+  }
+  while (sessions.size() > most) sessions.erase(sessions.begin());
   const auto bytes = static_cast<std::size_t>(file.form().place_bytes);
   file.read([&](const sqlite::PlaceBlock& block) {
-    const sqlite::SessionFacts& session = sessions.at(block.session);
+    const auto found = sessions.find(block.session);
+    if (found == sessions.end()) return;
+    const sqlite::SessionFacts& session = found->second;
     for (std::size_t i = 0; i < block.records.size(); ++i) {
       const sqlite::PlaceRecord& record = block.records[i];
       read({session.began_ns,
@@ -95,8 +101,8 @@ class SqliteMap : public LastingMap {
 
   [[nodiscard]] std::vector<std::int64_t> begun() const override { return stored_.begun(); }
 
-  void read_saved(const SavedPlaceReader& read) const override {
-    read_places(stored_.path(), read);
+  void read_saved(std::size_t most, const SavedPlaceReader& read) const override {
+    read_places(stored_.path(), most, read);
   }
 
   void follow(StatisticsReader learnt) override { learnt_ = std::move(learnt); }

@@ -77,8 +77,9 @@ class LastingMap {
   /// When each session of the file began.
   [[nodiscard]] virtual std::vector<std::int64_t> begun() const = 0;
 
-  /// All places of the file, as it is now. Any thread. Throws SetupError.
-  virtual void read_saved(const SavedPlaceReader& read) const = 0;
+  /// Places of the file, as it is now. Any thread. Throws SetupError.
+  /// @param most of the newest so many sessions that have places
+  virtual void read_saved(std::size_t most, const SavedPlaceReader& read) const = 0;
 
   /// Somebody follows the drive: to be called before `begin`. From then on `read_newest` is to be
   /// called again and again, since a full map forgets no place before that.
