@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -29,6 +32,21 @@ void be_interrupted_in_another_thread() {
 // Under the thread sanitizer this is the race of a handler and a loop in two threads.
 TEST(Interruption, IsHeardWhicheverThreadTheSystemGivesTheSignal) {
   EXPECT_EXIT((be_interrupted_in_another_thread(), std::exit(0)), testing::ExitedWithCode(0), "");
+}
+
+/// Is asked twice at once, as by `timeout`, and again after a while.
+void be_interrupted_again_and_again() {
+  take_interruptions();
+  ::raise(SIGINT);
+  ::raise(SIGTERM);
+  std::fputs("goes on", stderr);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1'100));
+  ::raise(SIGTERM);
+  std::_Exit(interrupted() ? 1 : 2);
+}
+
+TEST(Interruption, OfSignalsThatComeTogetherOneCounts) {
+  EXPECT_EXIT(be_interrupted_again_and_again(), testing::KilledBySignal(SIGTERM), "goes on");
 }
 
 }  // namespace

@@ -2,16 +2,27 @@
 #include "program/process/interruption.hpp"
 
 #include <signal.h>
+#include <time.h>
 
 #include <atomic>
+#include <cstdint>
 #include <stdexcept>
 
 namespace seqloop::program {
 namespace {
 
-/// Atomic, because the system may give a signal to any thread: a library's workers run too.
-std::atomic<bool> asked = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write it");
+constexpr std::int64_t a_second = 1'000'000'000;
+
+/// When the program was asked to stop; 0: it was not. Atomic, because the system may give a signal
+/// to any thread: a library's workers run too.
+std::atomic<std::int64_t> asked_ns = 0;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may write it");
+
+std::int64_t now_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * a_second + now.tv_nsec;
+}
 
 /// Gives the signals to a handler, but for those that are ignored.
 void handle_with(void (*handler)(int)) noexcept {
@@ -25,16 +36,19 @@ void handle_with(void (*handler)(int)) noexcept {
   }
 }
 
-void ask(int /*signal*/) {
-  asked = true;
-  handle_with(SIG_DFL);  // the next one ends the program, whichever it is
+void ask(int signal) {
+  const std::int64_t now = now_ns();
+  std::int64_t first = 0;
+  if (asked_ns.compare_exchange_strong(first, now) || now - first < a_second) return;
+  handle_with(SIG_DFL);
+  raise(signal);  // taken when this has returned
 }
 
 }  // namespace
 
 void take_interruptions() noexcept { handle_with(ask); }
 
-bool interrupted() noexcept { return asked; }
+bool interrupted() noexcept { return asked_ns != 0; }
 
 void stop_if_interrupted() {
   if (interrupted()) throw std::runtime_error("interrupted: nothing has been written");
