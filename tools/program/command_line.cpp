@@ -7,12 +7,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "program/options/config_file.hpp"
@@ -245,7 +249,7 @@ int exit_code_of(int argc, char** argv, const std::vector<Verb>& verbs) {
     opencv::silence_opencv();
     const int exit_code = parse_and_run(argc, argv, verbs);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw std::runtime_error("standard output: cannot be written");
+      throw std::system_error(errno, std::generic_category());
     }
     return exit_code;
   } catch (const SetupError& error) {
@@ -255,6 +259,11 @@ int exit_code_of(int argc, char** argv, const std::vector<Verb>& verbs) {
     return bad_usage;
   } catch (const std::bad_alloc&) {
     say("memory: there is not enough");
+  } catch (const std::system_error& error) {
+    // What prints does not say what it prints to.
+    say("{}", std::ferror(stdout) != 0
+                  ? "standard output: cannot be written: " + error.code().message()
+                  : std::string(error.what()));
   } catch (const std::exception& error) {
     say("{}", error.what());
   }
