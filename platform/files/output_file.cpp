@@ -128,6 +128,7 @@ void OutputFile::overwrite_start(std::span<const std::byte> bytes) {
 
 void OutputFile::flush() {
   auto bytes = std::span<const std::byte>(buffer_).first(std::exchange(buffered_, 0));
+  const std::size_t all = bytes.size();
   while (!bytes.empty()) {
     std::size_t count = bytes.size();
     if (give_up_ != nullptr && partial_.empty()) {
@@ -139,12 +140,14 @@ void OutputFile::flush() {
     if (written < 0) throw IoError(name(), "cannot be written: " + reason(errno));
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+  whole_ += all;
 }
 
 std::filesystem::path OutputFile::keep_incomplete() noexcept {
   if (partial_.empty() || descriptor_ < 0) return {};
   try {
     std::filesystem::path kept = path_.string() + ".incomplete";
+    (void)!::ftruncate(descriptor_, static_cast<off_t>(whole_));
     if (std::rename(partial_.c_str(), kept.c_str()) != 0) return {};
     partial_.clear();
     ::close(std::exchange(descriptor_, -1));

@@ -529,6 +529,18 @@ TEST_F(Run, EachOutputThatCanBeWrittenIs) {
   for (const char* name : {"b.mcap", "g.g2o", "t.tum"}) EXPECT_FALSE(exists(name)) << name;
 }
 
+TEST_F(Run, WhatIsKeptOfLinesThatTheDiskDoesNotTakeIsWhole) {
+  write_npy("drive.npy", oracle::drive(6, 300, 20, 0.2F));
+  const test::Outcome outcome = run("--version >/dev/null; ulimit -f 100; '" SEQLOOP_BINARY
+                                    "' run --source drive.npy --out l.jsonl");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_FALSE(exists("l.jsonl"));
+  const std::string kept = test::read_all(file("l.jsonl.incomplete"));
+  EXPECT_GT(kept.size(), 40'000U);
+  EXPECT_EQ(kept.back(), '\n') << kept.substr(kept.size() - 100);
+  EXPECT_EQ(run("report l.jsonl.incomplete --out page.html").exit_code, 0);
+}
+
 TEST_F(Run, PicturesOfWhichOneIsAFolderAreRefusedBeforeAnyWork) {
   write_npy("drive.npy", oracle::drive(6, 150, 20, 0.2F));
   std::filesystem::create_directories(file("drawn/matches.png"));

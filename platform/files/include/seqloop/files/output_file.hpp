@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
@@ -51,7 +52,8 @@ class OutputFile {
   /// Throws IoError.
   void commit();
 
-  /// After a write that failed: keeps what was written before it, as `NAME.incomplete`.
+  /// After a flush that failed: keeps what was flushed before it, as `NAME.incomplete`, and nothing
+  /// of what the disk took a part of.
   /// @return that name; empty where nothing is kept: the file is written directly, or cannot be
   ///   renamed. The last call.
   std::filesystem::path keep_incomplete() noexcept;
@@ -75,6 +77,7 @@ class OutputFile {
   std::filesystem::path partial_;  ///< empty when the file is written directly
   std::vector<std::byte> buffer_;
   std::size_t buffered_ = 0;  ///< bytes of buffer_ in use
+  std::uint64_t whole_ = 0;   ///< bytes of the file up to the last flush that did not fail
   int descriptor_ = -1;
   bool (*give_up_)() noexcept = nullptr;
 };
