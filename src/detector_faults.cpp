@@ -27,8 +27,10 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
   }
   if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
       map.full_map() != config.full_map) {
-    faults.push_back({"map", "it was made for another configuration",
-                      "give both the same arithmetic, difference, relocalising and full_map"});
+    faults.push_back(
+        {"map", "it was made for another configuration",
+         "give both the same arithmetic, difference, candidates, relocalising, decision "
+         "and full_map"});
   }
   if (map.standardises() != config.standardisation.on) {
     faults.push_back(

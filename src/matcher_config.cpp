@@ -162,10 +162,12 @@ Faults validate(const Capacity& capacity, const MatcherConfig& config) {
   check_range(faults, "sessions", capacity.sessions, 1, most_places);
   const bool small = config.arithmetic != Arithmetic::float32 || scans(config);
   if (small && capacity.descriptor_size > most_small_values) {
-    faults.push_back({"arithmetic",
-                      std::to_string(capacity.descriptor_size) + " values are too many for it, " +
+    faults.push_back({"descriptor_size",
+                      std::to_string(capacity.descriptor_size) +
+                          " values are too many for whole numbers and sketches, " +
                           std::to_string(most_small_values) + " at most",
-                      "set arithmetic to float32, and relocalising.on to false"});
+                      "set arithmetic to float32, relocalising.on to false and decision to "
+                      "uniqueness"});
   }
   return faults;
 }

@@ -90,7 +90,7 @@ struct Standardisation {
 struct MatcherConfig {
   Candidates candidates = Candidates::adaptive;
   Difference difference = Difference::euclidean;
-  /// What is not float32 wants Euclidean differences of at most 2^17 values.
+  /// What is not float32 wants Euclidean differences.
   Arithmetic arithmetic = Arithmetic::int8;
   Use use = Use::localise;
   std::size_t sequence_length =
@@ -135,8 +135,9 @@ struct MatcherConfig {
 
 /// What a detector and its map must have room for.
 struct Capacity {
-  std::size_t places = 0;           ///< rows of the map; 1 .. 2^32
-  std::size_t descriptor_size = 0;  ///< values in a descriptor, D; 1 .. 2^22
+  std::size_t places = 0;  ///< rows of the map; 1 .. 2^32
+  /// Values in a descriptor, D; 1 .. 2^22, to 2^17 where they are not kept as float32, or `scans`.
+  std::size_t descriptor_size = 0;
   /// Of the map, the running one too; 1 .. 2^32. One whose places have all gone counts as well.
   std::size_t sessions = 1;
 };

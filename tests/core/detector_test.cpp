@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/matcher.hpp"
+#include "expect_setup_error.hpp"
 
 namespace seqloop {
 namespace {
@@ -604,6 +605,30 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(validate(Capacity{most_places, std::size_t{1} << 22U}, exact).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values}, {}).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values + 1}, {}).size(), 1U);
+}
+
+TEST(Validate, LongDescriptorsFitOnceAllIsDoneThatTheFaultAsksFor) {
+  const Capacity capacity{1, most_small_values + 1};
+  MatcherConfig config;
+  const auto remedy = [&] { return to_string(validate(capacity, config).at(0)); };
+  EXPECT_TRUE(test::says(remedy(), "arithmetic to float32"));
+  config.arithmetic = Arithmetic::float32;
+  EXPECT_TRUE(test::says(remedy(), "relocalising.on to false"));
+  config.relocalising.on = false;
+  EXPECT_TRUE(test::says(remedy(), "decision to uniqueness"));
+  config.decision = Decision::uniqueness;
+  EXPECT_EQ(validate(capacity, config).size(), 0U);
+}
+
+TEST(Detector, SaysOfAMapWhatElseMakesItAnother) {
+  MatcherConfig config;
+  config.candidates = Candidates::all;
+  config.decision = Decision::uniqueness;
+  PlaceMap map(config, {10, 3});
+  ASSERT_TRUE(map.add(std::vector<float>{1.0F, 0.0F, 0.0F}));
+  const std::string message = test::setup_error([&] { const Detector detector({}, map); });
+  EXPECT_TRUE(test::says(message, "candidates"));
+  EXPECT_TRUE(test::says(message, "decision"));
 }
 
 }  // namespace

@@ -265,6 +265,9 @@ TEST_F(BadInput, CommandLines) {
   expect_refused("match --ds", {"ds"});
   expect_refused("match --ds 10 --ds 20", {"ds: given more than once"});
   expect_refused("plan --max-places 0", {"places"});
+  expect_refused("plan --max-places 10 --descriptor-size 131073",
+                 {"descriptor-size: 131073", "--arithmetic float", "--relocalise off",
+                  "--decide-by uniqueness"});
 }
 
 TEST_F(BadInput, EmptyValues) {

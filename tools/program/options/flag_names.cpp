@@ -37,6 +37,7 @@ constexpr std::array members{Renamed{"sequence_length", "ds"},
 // What remedies say of them.
 constexpr std::array phrases{Renamed{"set arithmetic to float32", "--arithmetic float"},
                              Renamed{"relocalising.on to false", "--relocalise off"},
+                             Renamed{"decision to uniqueness", "--decide-by uniqueness"},
                              Renamed{"set full_map to refuse", "--full-map refuse"},
                              Renamed{"raise sequence_length", "lengthen ds"},
                              Renamed{"sequence_length", "ds"},
