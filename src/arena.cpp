@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "seqloop/fault.hpp"
 
@@ -10,15 +11,18 @@ namespace seqloop {
 
 ArenaMemory::ArenaMemory(std::uint64_t bytes, std::span<std::byte> memory) : span_(memory) {
   if (!memory.empty()) {
+    Faults faults;
     if (memory.size() < bytes) {
-      throw SetupError(
+      faults.push_back(
           {"memory",
            std::to_string(memory.size()) + " bytes given, " + std::to_string(bytes) + " needed",
            "ask bytes_needed() for the size"});
     }
     if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-      throw SetupError({"memory", "not aligned to " + std::to_string(Arena::alignment) + " bytes"});
+      faults.push_back({"memory", "not aligned to " + std::to_string(Arena::alignment) + " bytes",
+                        "begin it at a multiple of Arena::alignment"});
     }
+    if (!faults.empty()) throw SetupError(std::move(faults));
     return;
   }
   const auto all = static_cast<std::size_t>(bytes);

@@ -58,6 +58,14 @@ TEST(Memory, ThatIsKnownToBeZeroIsNotWrittenTo) {
   EXPECT_EQ(zeroed.take<std::uint8_t>("bytes", 64).back(), 0);
 }
 
+TEST(Memory, WhatIsGivenHasAllItsFaultsNamedAtOnce) {
+  const ArenaMemory memory(64, {});
+  const std::string message =
+      test::setup_error([&] { const ArenaMemory given(64, memory.span().subspan(1)); });
+  EXPECT_TRUE(test::says(message, "63 bytes given, 64 needed; ask bytes_needed()"));
+  EXPECT_TRUE(test::says(message, "not aligned to 64 bytes; "));
+}
+
 TEST(Memory, MoreThanA32BitSystemAddressesIsPlannedToTheByteAndRefused) {
   const MatcherConfig config;
   const Capacity capacity{100'000'000, 65'536};
