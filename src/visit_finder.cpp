@@ -18,7 +18,7 @@ MatcherConfig to_close_loops(const MatcherConfig& config, std::size_t places) {
   closing.keyframes = has_keyframes(config);
   closing.blank_is_unreadable = config.blank_is_unreadable;
   // Each step is a place here, so that none is further back, and what was asked for takes memory.
-  closing.exclude = std::min(config.exclude, places);
+  closing.exclude = std::min(config.exclude, std::max<std::size_t>(places, 1));
   return closing;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/matcher.hpp"
 #include "core/ways.hpp"
+#include "expect_setup_error.hpp"
 
 namespace seqloop {
 namespace {
@@ -67,6 +68,12 @@ TEST(VisitFinder, AnyNumberOfNewestFramesMayBeNoPlaces) {
   }
   const Capacity capacity{map.capacity(), map.descriptor_size()};
   EXPECT_EQ(Detector::bytes_needed(config, capacity), Detector::bytes_needed({}, capacity));
+}
+
+TEST(VisitFinder, BlamesNothingButThatThereAreNoPlaces) {
+  const PlaceMap map({}, {1, 16});
+  const std::string message = test::setup_error([&] { const VisitFinder visits({}, map, 0); });
+  EXPECT_TRUE(message.starts_with("places: 0 ")) << message;
 }
 
 TEST(VisitFinder, LinksNothingWhereNothingComesTwice) {
