@@ -32,7 +32,8 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   processed.descriptor = seen.descriptor;
   processed.fault = seen.fault;
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
-    processed.fault = "its descriptor is all zero, not of unit length, or of the wrong size";
+    processed.fault =
+        "its descriptor is blank, not finite, not of unit length, or of the wrong size";
   }
   processed.times.age = processed.frame.age;
   processed.times.grab = grabbed - began - processed.frame.waited;

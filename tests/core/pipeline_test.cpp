@@ -2,6 +2,9 @@
 // Grab, describe, match, with fakes for everything outside.
 #include "seqloop/pipeline.hpp"
 
+#include <limits>
+#include <string_view>
+
 #include "core/matcher.hpp"
 
 namespace seqloop {
@@ -135,6 +138,21 @@ TEST(Pipeline, CountsWhatNeverCameAndGoesOn) {
   }
   EXPECT_EQ(frames, 40U);
   EXPECT_EQ(silences, 6U);
+}
+
+TEST(Pipeline, SaysThatADescriptorIsNotFinite) {
+  oracle::Vectors drive = oracle::drive(3, 30, 16);
+  PlaceMap map = map_of(drive, paper(Candidates::all, 6));
+  Detector detector(paper(Candidates::all, 6), map);
+  drive[0][3] = std::numeric_limits<float>::quiet_NaN();
+  FakeSource source(1);
+  FakeDescriber describer(drive);
+  FakeClock clock;
+  Pipeline pipeline(source, &describer, detector, clock, 16);
+  const auto processed = pipeline.process();
+  ASSERT_TRUE(processed);
+  EXPECT_EQ(processed->report.gate, Gate::frame_error);
+  EXPECT_NE(processed->fault.find("not finite"), std::string_view::npos) << processed->fault;
 }
 
 }  // namespace
