@@ -36,9 +36,12 @@ namespace seqloop {
 /// O-SeqCNNSLAM relocalise, candidates come from the last frame's best rows and from a scan of a
 /// part of the map, the best first, until the frame's budget of distances is spent: no frame's work
 /// grows with the map.
+///
+/// Threads: one at a time. Localising only reads the map, so that detectors in threads of their own
+/// may share one that nobody changes.
 class Detector {
  public:
-  /// Bytes of every buffer beside the map's.
+  /// Bytes of every buffer beside the map's. Errors: SetupError, all faults at once.
   [[nodiscard]] static std::vector<BufferSize> plan(const MatcherConfig& config,
                                                     const Capacity& capacity);
   [[nodiscard]] static std::uint64_t bytes_needed(const MatcherConfig& config,
@@ -46,7 +49,7 @@ class Detector {
     return total_bytes(plan(config, capacity));
   }
 
-  /// The most that one step can cost, but for what `take_in` leaves to it.
+  /// The most that one step can cost, but for what `take_in` leaves to it; of what `plan` takes.
   [[nodiscard]] static Work most_work(const MatcherConfig& config, const Capacity& capacity);
 
   /// @param map lives longer than the detector. To localise: filled (and standardised, where the
@@ -88,10 +91,10 @@ class Detector {
 
   /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds of
   /// them, in one call or several, are frames at which the scene stood still, so that trajectories
-  /// keep their velocities; closing loops, they become places. After more, what was seen before
-  /// says nothing of now: none of them is counted, and the window begins anew (`warming_up`). Work:
-  /// N + D copies a frame at most; no distances, no line-sums. Allocates: never. Source:
-  /// src/README.md, section 5.7.
+  /// keep their velocities; closing loops, they become places. With more, what was seen before says
+  /// nothing of now: the window begins anew (`warming_up`), and of that call none is counted. None
+  /// is before the first step, either. Work: N + D copies a frame at most; no distances, no
+  /// line-sums. Allocates: never. Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.

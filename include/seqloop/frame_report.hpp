@@ -34,11 +34,13 @@ struct Match {
   /// with those that a full map forgets, and the frames between them that were no keyframes or
   /// found no room.
   std::uint64_t place = 0;
-  float score = 0.0F;  ///< mean difference along the line, 0 .. 2; smaller is more certain
+  /// Mean difference along the line, 0 .. 2; smaller is more certain. NaN where no line leads to
+  /// the place, which evidence over time speaks for.
+  float score = 0.0F;
   /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
   /// full search had to stand in and is better; NaN where not defined.
   float uniqueness = 0.0F;
-  double velocity = 0.0;   ///< rows a keyframe; NaN for single frames
+  double velocity = 0.0;   ///< rows a keyframe; NaN for single frames, and without a line
   std::uint64_t head = 0;  ///< the place at the newest column
   /// `Decision::uniqueness`: the place of that runner-up; none where one of an earlier frame, or
   /// nothing, stood in.

@@ -58,7 +58,10 @@ class PlaceMap {
   /// Appends a place; standardised, if that is on, as a drive's frames are: by what the session has
   /// shown so far. Where sequences are made of keyframes (`has_keyframes`), others take no room:
   /// the numbers of those that follow leave theirs out.
-  /// @param descriptor [D]; without NaN or infinity
+  /// @param descriptor [D] as `Detector::step` takes it; only NaN and infinity are refused here,
+  ///   and what else it would not take spoils the map. Of a frame that could not be read, give that
+  ///   of the frame before it, or of the next where there is none: so places keep the numbers of
+  ///   their frames
   /// @return false when the map is full, or the descriptor is of another size or not finite: then
   ///   nothing has changed
   /// Work: 9 D, and the sketch. Allocates: never.
@@ -151,8 +154,9 @@ class PlaceMap {
     if (frames < std::numeric_limits<std::uint32_t>::max()) ++frames;
   }
 
-  /// Frames after a place's own at which the robot stood there. None are known in a map that has
-  /// room for several sessions: there places are what is told, not frames.
+  /// Frames after a place's own at which the robot stood there. None are known of places that were
+  /// saved, and in a map that has room for several sessions: there places are what is told, not
+  /// frames.
   [[nodiscard]] std::uint64_t stood(std::size_t row) const noexcept {
     return stood_.empty() ? 0 : stood_[order_.slot(row)];
   }
