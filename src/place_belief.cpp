@@ -40,10 +40,17 @@ constexpr double fast_pace = 1.35;
 // be of another place.
 constexpr double jumps_often = 0.01;
 
-constexpr double decay = 0.95;
+constexpr double most_forgotten = 0.05;  // of a sum or mean over frames, with each
 constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
 constexpr std::size_t found_most = 15;
 constexpr std::size_t old_most = PlaceBelief::most - found_most - 1;  // one comes by the line
+
+/// What a sum of gains loses with a frame: less where that tells little, so that a fast camera's is
+/// of as much of the way as a slow one's. @param novelty 0 .. 1
+double forgotten_by(double novelty) {
+  constexpr double share = 0.22;
+  return std::min(most_forgotten, share * novelty);
+}
 
 /// The n-th highest value, and how many are higher. Unlike `std::nth_element` it asks of no value
 /// where to go on: processors guess such answers wrong.
@@ -329,8 +336,8 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     gains[i] = l;
     at.told = w * l;
     at.mass *= exponential(at.told);
-    at.gain = decay * at.gain + at.told;
-    at.contrast = decay * at.contrast + (1.0 - decay) * contrast;
+    at.gain = (1.0 - forgotten_by(w)) * at.gain + at.told;
+    at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * contrast;
     at.age += w;
     at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
   }
@@ -396,7 +403,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps)
       Hypothesis& at = rows[first];
       const bool same = view.map->same_place(at.row, top->row);
       // What a row gained while it was right says nothing about wrong ones.
-      at.wrong = decay * at.wrong + (same && on_map ? 0.0 : at.told);
+      at.wrong = (1.0 - forgotten_by(scene.novelty)) * at.wrong + (same && on_map ? 0.0 : at.told);
       if (same) {
         place += at.mass;
         if (on_map) share_history(view.map->order(), *top, at);
@@ -453,9 +460,10 @@ void PlaceBelief::know_better(const PlaceMap& map, std::size_t index) noexcept {
 }
 
 double PlaceBelief::usual_gain() const noexcept {
-  // A little more than they do: (1 - decay) would be their mean.
-  constexpr double share = 0.065;
-  return share * std::max(0.0, wrong_.mean()) / wrong_.novelty();
+  // A little more than they do: 1 would be their mean.
+  constexpr double more = 1.3;
+  const double novelty = wrong_.novelty();
+  return more * forgotten_by(novelty) * std::max(0.0, wrong_.mean()) / novelty;
 }
 
 double PlaceBelief::remember(double odds) noexcept {
