@@ -2,27 +2,19 @@
 #include "program/process/interruption.hpp"
 
 #include <signal.h>
-#include <time.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 
 namespace seqloop::program {
 namespace {
 
-constexpr std::int64_t a_second = 1'000'000'000;
-
 /// When the program was asked to stop; 0: it was not. Atomic, because the system may give a signal
 /// to any thread: a library's workers run too.
 std::atomic<std::int64_t> asked_ns = 0;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may write it");
-
-std::int64_t now_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * a_second + now.tv_nsec;
-}
 
 /// Gives the signals to a handler, but for those that are ignored.
 void handle_with(void (*handler)(int)) noexcept {
@@ -37,9 +29,11 @@ void handle_with(void (*handler)(int)) noexcept {
 }
 
 void ask(int signal) {
-  const std::int64_t now = now_ns();
+  // By clock_gettime, which a signal handler may call.
+  const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
   std::int64_t first = 0;
-  if (asked_ns.compare_exchange_strong(first, now) || now - first < a_second) return;
+  if (asked_ns.compare_exchange_strong(first, now.count())) return;
+  if (now - std::chrono::nanoseconds(first) < std::chrono::seconds(1)) return;
   handle_with(SIG_DFL);
   raise(signal);  // taken when this has returned
 }
