@@ -213,7 +213,8 @@ TEST(PlaceBelief, KnowsThatARevisitWasInterrupted) {
     for (const Answer& answer :
          drive_through({}, unit(drive), settings(Use::close_loops)).answers) {
       if (answer.gate != Gate::match) continue;
-      const std::size_t since = answer.frame - std::min(answer.frame, std::uint64_t{comes});
+      const auto frame = static_cast<std::size_t>(answer.frame);
+      const std::size_t since = frame - std::min(frame, std::size_t{comes});
       // Where roads part and meet they show the same.
       constexpr std::size_t near = 10;
       const bool is_beside = since >= leaves + near && since + near < returns;
