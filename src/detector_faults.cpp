@@ -2,11 +2,26 @@
 #include "seqloop/detail/detector_faults.hpp"
 
 #include <string>
+#include <utility>
 
 namespace seqloop {
 
-Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
+Faults detector_faults(const MatcherConfig& config, const Capacity& capacity) {
   Faults faults = validate(config);
+  for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
+  if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
+      capacity.places < least_places(config)) {
+    faults.push_back({"places",
+                      std::to_string(capacity.places) + " leave no candidates once the map is full",
+                      "take " + std::to_string(least_places(config)) +
+                          " or more with this exclude and sequence_length"});
+  }
+  return faults;
+}
+
+Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
+  Faults faults =
+      detector_faults(config, {map.capacity(), map.descriptor_size(), map.order().most_sessions()});
   // Where there is room for several sessions, they may be taken in later.
   if (config.use == Use::localise && map.size() == 0 && map.order().most_sessions() == 1) {
     faults.push_back(
@@ -17,13 +32,6 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
         {"sessions",
          "the map has no room for one more than its " + std::to_string(map.order().sessions()),
          "give it room for the drive that is added, too"});
-  }
-  if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
-      map.capacity() < least_places(config)) {
-    faults.push_back({"places",
-                      std::to_string(map.capacity()) + " leave no candidates once the map is full",
-                      "take " + std::to_string(least_places(config)) +
-                          " or more with this exclude and sequence_length"});
   }
   if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
       map.full_map() != config.full_map) {

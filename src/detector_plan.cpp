@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <utility>
 
+#include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/detector.hpp"
 
 namespace seqloop {
 
 std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
-  check(config, capacity);
+  Faults faults = detector_faults(config, capacity);
+  if (!faults.empty()) throw SetupError(std::move(faults));
   std::vector<BufferSize> buffers;
   const Detector measured(Arena(buffers), config, nullptr, capacity, ArenaMemory());
   return buffers;

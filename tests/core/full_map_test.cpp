@@ -10,6 +10,7 @@
 #include "core/matcher.hpp"
 #include "core/shown_drive.hpp"
 #include "core/ways.hpp"
+#include "expect_setup_error.hpp"
 #include "seqloop/difference.hpp"
 
 namespace seqloop {
@@ -387,6 +388,20 @@ TEST(FullMap, AMapWithoutRoomForCandidatesIsRefused) {
     }
     EXPECT_GT(answered, 50U);
   }
+}
+
+TEST(FullMap, ThePlanOfADetectorIsRefusedWithWhatItIsRefusedWith) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.full_map = FullMap::thin;
+  PlaceMap map(config, {least_places(config) - 1, 16});
+  config.k = 0;
+  const std::string planned = test::setup_error([&] {
+    static_cast<void>(Detector::plan(config, {map.capacity(), 16}));
+  });
+  EXPECT_TRUE(test::says(planned, "k: 0 is not between"));
+  EXPECT_TRUE(test::says(planned, "places: 57 leave no candidates once the map is full; take 58"));
+  EXPECT_EQ(planned, test::setup_error([&] { const Detector detector(config, map); }));
 }
 
 }  // namespace
