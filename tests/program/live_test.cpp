@@ -191,6 +191,13 @@ TEST_F(Live, WarmsUpAtOnceHoweverWideItIsSet) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
+TEST_F(Live, WarmsUpWhereAMapThatForgetsIsDrivenThroughFast) {
+  write_drive("q.npy", 120);
+  const test::Outcome outcome =
+      run("run --source q.npy --full-map thin --vmin 3 --vmax 4 --out r.jsonl");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 TEST_F(Live, StopsAfterAsManyFramesAsAskedFor) {
   write_drive("q.npy", 60);
   const test::Outcome outcome =

@@ -48,7 +48,8 @@ void match_noise(MatcherConfig config, std::size_t descriptor_size, std::mt19937
   config.rwindow = std::min(config.rwindow, usual.rwindow);
   const std::size_t window = config.sequence_length + 1;
   const bool closing = config.use == Use::close_loops;
-  const std::size_t places = (closing ? config.exclude : 0) + 3 * window + config.rwindow;
+  const std::size_t places =
+      std::max(least_places(config), (closing ? config.exclude : 0) + 3 * window + config.rwindow);
   const std::size_t size = std::min(descriptor_size, small_descriptor);
   std::uniform_real_distribution<float> values(0.1F, 1.0F);
   std::vector<float> descriptor(size);
