@@ -1,7 +1,35 @@
 // SPDX-License-Identifier: MIT
 #include "seqloop/pipeline.hpp"
 
+#include <string>
+#include <utility>
+
 namespace seqloop {
+namespace {
+
+/// Throws SetupError: with descriptors of another size each frame would be a `frame_error`, and a
+/// smaller buffer be written beyond.
+std::size_t size_that_fits(const Describer& describer, const Detector& detector,
+                           std::size_t descriptor_size) {
+  Faults faults;
+  if (describer.size() != detector.descriptor_size()) {
+    faults.push_back({"describer",
+                      "its descriptors have " + std::to_string(describer.size()) +
+                          " values, those of the detector's map " +
+                          std::to_string(detector.descriptor_size()),
+                      "make the map for the describer's size, or take what described the map"});
+  }
+  if (descriptor_size != describer.size()) {
+    faults.push_back({"descriptor_size",
+                      std::to_string(descriptor_size) + ", where the describer writes " +
+                          std::to_string(describer.size()) + " values",
+                      "give the describer's size()"});
+  }
+  if (!faults.empty()) throw SetupError(std::move(faults));
+  return descriptor_size;
+}
+
+}  // namespace
 
 Pipeline::Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
                    std::size_t descriptor_size)
@@ -9,7 +37,8 @@ Pipeline::Pipeline(FrameSource& source, Describer* describer, Detector& detector
       describer_(describer),
       detector_(&detector),
       clock_(&clock),
-      descriptor_(descriptor_size) {}
+      descriptor_(describer == nullptr ? 0
+                                       : size_that_fits(*describer, detector, descriptor_size)) {}
 
 std::optional<ProcessedFrame> Pipeline::process() noexcept {
   ProcessedFrame processed;

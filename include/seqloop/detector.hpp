@@ -66,6 +66,9 @@ class Detector {
   Detector& operator=(Detector&&) = delete;
   ~Detector() = default;
 
+  /// Values in a descriptor, D: those of the map.
+  [[nodiscard]] std::size_t descriptor_size() const noexcept { return map_->descriptor_size(); }
+
   /// Takes the next frame, and answers each frame whose one final answer is due: as soon as it is
   /// sure, or `patience` frames later. By uniqueness that is the window's centre, the frame
   /// ds - ds/2 before this one.

@@ -50,8 +50,10 @@ struct DescribedFrame {
 /// Grab, describe, match: one frame in, one report out.
 class Pipeline {
  public:
-  /// All of them live longer than the pipeline. @param describer may be null when the source hands
-  /// over descriptors. Allocates: one descriptor.
+  /// All of them live longer than the pipeline.
+  /// @param describer       may be null when the source hands over descriptors
+  /// @param descriptor_size that of the describer and the detector
+  /// Errors: SetupError, when the describer's is another than either. Allocates: one descriptor.
   Pipeline(FrameSource& source, Describer* describer, Detector& detector, Clock& clock,
            std::size_t descriptor_size);
 

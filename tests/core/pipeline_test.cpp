@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/matcher.hpp"
+#include "expect_setup_error.hpp"
 
 namespace seqloop {
 namespace {
@@ -153,6 +154,24 @@ TEST(Pipeline, SaysThatADescriptorIsNotFinite) {
   ASSERT_TRUE(processed);
   EXPECT_EQ(processed->report.gate, Gate::frame_error);
   EXPECT_NE(processed->fault.find("not finite"), std::string_view::npos) << processed->fault;
+}
+
+TEST(Pipeline, SaysWhichSizesDifferBeforeTheFirstFrame) {
+  const MatcherConfig config = paper(Candidates::all, 6);
+  PlaceMap map = map_of(oracle::drive(3, 30, 16), config);
+  Detector detector(config, map);
+  FakeSource source(30);
+  FakeDescriber describer(oracle::drive(3, 30, 24));
+  FakeClock clock;
+  const auto message = [&](std::size_t descriptor_size) {
+    return test::setup_error(
+        [&] { const Pipeline pipeline(source, &describer, detector, clock, descriptor_size); });
+  };
+  EXPECT_EQ(message(24),
+            "describer: its descriptors have 24 values, those of the detector's map 16; make the "
+            "map for the describer's size, or take what described the map");
+  EXPECT_TRUE(test::says(message(16), "those of the detector's map 16;"));
+  EXPECT_TRUE(test::says(message(16), "descriptor_size: 16, where the describer writes 24 values"));
 }
 
 }  // namespace
