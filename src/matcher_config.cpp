@@ -28,6 +28,16 @@ void check_range(Faults& faults, const char* name, std::size_t value, std::size_
                               " and " + std::to_string(high)});
 }
 
+/// @param last choice; the first is 0
+template <class Choice>
+void check_choice(Faults& faults, const char* name, Choice value, Choice last) {
+  if (value <= last) return;
+  faults.push_back({name,
+                    std::to_string(static_cast<int>(value)) + " is none of its values, 0 to " +
+                        std::to_string(static_cast<int>(last)),
+                    "take one that has a name"});
+}
+
 // Rows a frame.
 constexpr double fastest = 10.0;
 
@@ -94,6 +104,12 @@ std::size_t least_places(const MatcherConfig& config) noexcept {
 Faults validate(const MatcherConfig& config) {
   constexpr std::size_t many = 1'000'000'000;
   Faults faults;
+  check_choice(faults, "candidates", config.candidates, Candidates::adaptive);
+  check_choice(faults, "difference", config.difference, Difference::mean_absolute);
+  check_choice(faults, "arithmetic", config.arithmetic, Arithmetic::sketch);
+  check_choice(faults, "use", config.use, Use::close_loops);
+  check_choice(faults, "full_map", config.full_map, FullMap::thin);
+  check_choice(faults, "decision", config.decision, Decision::uniqueness);
   check_range(faults, "sequence_length", config.sequence_length, 0, 2'000);
   const bool velocities_fit = check_velocities(faults, config);
   check_range(faults, "rwindow", config.rwindow, 0, many);
@@ -126,7 +142,7 @@ Faults validate(const MatcherConfig& config) {
                         "raise it, or lower num, sequence_length or vmax, or switch enhance off"});
     }
   }
-  if (config.arithmetic != Arithmetic::float32 && config.difference != Difference::euclidean) {
+  if (config.arithmetic != Arithmetic::float32 && config.difference == Difference::mean_absolute) {
     faults.push_back(
         {"arithmetic", "pictures are compared as float only", "set arithmetic to float32"});
   }

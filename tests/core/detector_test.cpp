@@ -607,6 +607,24 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(validate(Capacity{1, most_small_values + 1}, {}).size(), 1U);
 }
 
+TEST(Validate, RefusesAChoiceThatIsNone) {
+  MatcherConfig config;
+  config.candidates = Candidates{77};
+  config.difference = Difference{77};
+  config.arithmetic = Arithmetic{3};
+  config.use = Use{2};
+  config.full_map = FullMap{3};
+  config.decision = Decision{255};
+  const std::string message = test::setup_error([&] { check(config, {1, 1}); });
+  EXPECT_TRUE(test::says(message, "candidates: 77 is none of its values, 0 to 2; take one"));
+  EXPECT_TRUE(test::says(message, "difference: 77 is none of its values, 0 to 1"));
+  EXPECT_TRUE(test::says(message, "arithmetic: 3 is none of its values, 0 to 2"));
+  EXPECT_TRUE(test::says(message, "use: 2 is none of its values, 0 to 1"));
+  EXPECT_TRUE(test::says(message, "full_map: 3 is none of its values, 0 to 2"));
+  EXPECT_TRUE(test::says(message, "decision: 255 is none of its values, 0 to 1"));
+  EXPECT_EQ(std::ranges::count(message, '\n'), 5) << "one fault each: " << message;
+}
+
 TEST(Validate, LongDescriptorsFitOnceAllIsDoneThatTheFaultAsksFor) {
   const Capacity capacity{1, most_small_values + 1};
   MatcherConfig config;
