@@ -80,7 +80,7 @@ double squared_norm(std::span<const float> vector) noexcept {
 
 bool normalise(std::span<float> vector) noexcept {
   const double squares = squared_norm(vector);
-  if (squares <= 0.0) return false;
+  if (squares <= 0.0 || !std::isfinite(squares)) return false;
   const double factor = 1.0 / std::sqrt(squares);
   for (float& value : vector) value = static_cast<float>(static_cast<double>(value) * factor);
   return true;

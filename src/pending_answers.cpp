@@ -53,9 +53,11 @@ PendingAnswers::PendingAnswers(Arena& arena, const MatcherConfig& config,
                                        grows_ ? 0 : PlaceBelief::depth(config));
 }
 
-void PendingAnswers::accept_from(float least) noexcept {
+bool PendingAnswers::accept_from(float least) noexcept {
+  if (!(least > 0.0F && least <= 1.0F)) return false;
   least_ = static_cast<double>(least);
   least_before_calibration_ = before_calibration(least_);
+  return true;
 }
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {

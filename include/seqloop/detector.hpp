@@ -108,8 +108,9 @@ class Detector {
   bool take_in(std::size_t session, const PlaceMap::Saved& place) noexcept;
 
   /// Answers that are not given yet are accepted from this probability on, where the decision is by
-  /// probability. @param min_probability above 0 .. 1. Allocates: never.
-  void accept_from(float min_probability) noexcept { pending_.accept_from(min_probability); }
+  /// probability. @param min_probability above 0 .. 1
+  /// @return false when it is not, as NaN is not: then nothing has changed. Allocates: never.
+  bool accept_from(float min_probability) noexcept { return pending_.accept_from(min_probability); }
 
   /// The recording is over: answers every frame that still waits; by uniqueness none does. A live
   /// loop calls it when it ends; a step after it begins anew, as after many frames that never came.

@@ -67,8 +67,8 @@ inline constexpr std::size_t float_block = 64 * dot_lanes;
 /// Sum of the squares. NaN or infinite when a value is; zero only when all are.
 [[nodiscard]] double squared_norm(std::span<const float> vector) noexcept;
 
-/// Divides by the L2 norm. A zero vector stays zero.
-/// @return whether the vector was longer than zero. Paper: Algorithm 1.
+/// Divides by the L2 norm. A zero vector, and one with NaN or infinity in it, stays as it is.
+/// @return whether it was divided. Paper: Algorithm 1.
 bool normalise(std::span<float> vector) noexcept;
 
 }  // namespace seqloop

@@ -277,5 +277,19 @@ TEST(Normalise, MakesUnitVectorsAndLeavesZeroAlone) {
   EXPECT_FLOAT_EQ(tiny[0], 1.0F);
 }
 
+TEST(Normalise, LeavesAloneWhatIsNotFinite) {
+  using Limits = std::numeric_limits<float>;
+  for (const float value : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+    std::vector<float> vector{3.0F, value, -4.0F};
+    EXPECT_FALSE(normalise(vector)) << value;
+    EXPECT_EQ(vector[0], 3.0F) << value;
+    EXPECT_EQ(vector[2], -4.0F) << value;
+  }
+  std::vector<float> largest(3, Limits::max());
+  EXPECT_TRUE(normalise(largest)) << "that is finite";
+  EXPECT_FLOAT_EQ(largest[0], std::sqrt(1.0F / 3.0F));
+  EXPECT_FALSE(normalise({}));
+}
+
 }  // namespace
 }  // namespace seqloop

@@ -687,6 +687,27 @@ TEST(PlaceBelief, TakesAnything) {
   EXPECT_FALSE(validate(config).empty());
 }
 
+TEST(PlaceBelief, AcceptsFromNothingThatIsNoProbability) {
+  const oracle::Vectors known = way(1, 200, 0.3F, 1);
+  const oracle::Vectors again = way(1, 200, 0.3F, 2);
+  const MatcherConfig config = settings(Use::localise);
+  PlaceMap map = map_of(known, config);
+  Detector plain(config, map);
+  Detector told(config, map);
+  std::size_t accepted = 0;
+  for (const auto& seen : again) {
+    for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), 0.0F, -1.0F, 1.01F,
+                              std::numeric_limits<float>::infinity()}) {
+      EXPECT_FALSE(told.accept_from(wrong)) << wrong;
+    }
+    const std::span<const Answer> answers = told.step(seen).answers;
+    const std::span<const Answer> as_before = plain.step(seen).answers;
+    ASSERT_TRUE(std::ranges::equal(answers, as_before, {}, &Answer::gate, &Answer::gate));
+    accepted += static_cast<std::size_t>(std::ranges::count(answers, Gate::match, &Answer::gate));
+  }
+  EXPECT_GE(accepted, 100U);
+}
+
 TEST(PlaceBelief, ItsWorkIsBoundedAndInThePlan) {
   const oracle::Vectors reference = way(13, 5000, 0.5F, 1);
   const oracle::Vectors query = way(13, 300, 0.5F, 2);

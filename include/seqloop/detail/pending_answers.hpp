@@ -40,7 +40,8 @@ class PendingAnswers {
   PendingAnswers(Arena& arena, const MatcherConfig& config, const Trajectories& trajectories);
 
   /// From here on answers are accepted from this probability on. @param least above 0 .. 1
-  void accept_from(float least) noexcept;
+  /// @return false when it is not: then nothing has changed
+  bool accept_from(float least) noexcept;
 
   /// Whether an answer of this probability is accepted.
   [[nodiscard]] bool accepts(float probability) const noexcept {
