@@ -268,6 +268,28 @@ class Arrays(unittest.TestCase):
                 call()  # type: ignore[no-untyped-call]
             self.assertLess(len(str(raised.exception)), 200)
 
+    def test_a_wrong_number_of_arguments_is_told_as_python_tells_it(self) -> None:
+        describer = seqloop.Describer()
+        for call, words in (
+                (lambda: seqloop.PlaceMap(), r"PlaceMap.*missing 2 .*: 'max_places' and 'descriptor_size'"),
+                (lambda: seqloop.PlaceMap(9, 48, False, 3), "PlaceMap.* takes from 3 to 4 positional arguments but 5"),
+                (lambda: seqloop.PlaceMap(9, 48, max_places=3), "PlaceMap.* multiple values .* 'max_places'"),
+                (lambda: seqloop.PlaceMap.open("m", 48, 9, "d"), "PlaceMap.open.* takes from 2 to 3 .* but 4"),
+                (lambda: self.places.where(frame=3), "PlaceMap.where.* unexpected keyword argument 'frame'"),
+                (lambda: self.places.close(3), "PlaceMap.close.* takes 1 positional argument but 2"),
+                (lambda: seqloop.Detector(), "Detector.* missing 1 .*: 'map'"),
+                (lambda: self.detector.step(self.query[0], times=3), "Detector.step.* keyword argument 'times'"),
+                (lambda: self.detector.step(self.query, 0.5, 1), "Detector.step.* takes from 2 to 3 .* but 4"),
+                (lambda: seqloop.Detector.finish(), "Detector.finish.* missing 1 .*: 'self'"),
+                (lambda: seqloop.Describer("net.onnx"), "Describer.* takes 1 positional argument but 2"),
+                (lambda: seqloop.Describer.settings(1), "Describer.settings.* takes 0 .* but 1"),
+                (lambda: describer.describe(), "Describer.describe.* missing 1 .*: 'picture'"),
+                (lambda: describer.describe_drive("day", frame=2), "Describer.describe_drive.* argument 'frame'")):
+            with self.assertRaisesRegex(TypeError, "^" + words) as raised:
+                call()  # type: ignore[call-arg,no-untyped-call]
+            self.assertLess(len(str(raised.exception)), 110)
+        self.assertEqual(self.detector.step(None).newest, 0, "what was refused is no frame")
+
     def test_read_only_arrays_are_read_where_they_lie(self) -> None:
         frozen = self.query.copy()
         frozen.flags.writeable = False

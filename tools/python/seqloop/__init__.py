@@ -30,7 +30,8 @@ A map that lasts, in the same files as `seqloop run --map`, of many sessions:
 Settings are keyword arguments with the names of the program's flags: `seqloop.settings()` lists
 them. What goes wrong is a SetupError, a ValueError that tells every fault at once. So is what is
 given in place of a NumPy array, such as a list or a file's name. Other arguments of a wrong Python
-type, such as a string for a number of places, are TypeErrors.
+type, such as a string for a number of places, are TypeErrors, as are too few, too many, and those of
+a name that is none.
 
 Frames and places are counted from 0. Differences and scores are 0 to 2, lower is better;
 probabilities 0 to 1.
@@ -44,7 +45,7 @@ import typing
 import numpy
 import numpy.typing
 
-from . import _core
+from . import _calls, _core
 from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work, __version__
 from ._errors import SetupError
 from ._types import Gate, Setting
@@ -56,6 +57,9 @@ Floats = numpy.typing.NDArray[numpy.floating[typing.Any]]
 Integers = numpy.typing.NDArray[numpy.int64]
 
 MapPath = typing.Union[str, "os.PathLike[str]"]
+
+_calls.told_in_a_sentence(PlaceMap)
+_calls.told_in_a_sentence(Detector)
 
 __all__ = ["Answer", "Belief", "Describer", "Detector", "Gate", "MapInfo", "Match", "Matches", "Measures",
            "PlaceMap", "Report", "Session", "Setting", "SetupError", "Work", "__version__", "check_map", "differences",
@@ -271,5 +275,5 @@ def __getattr__(name: str) -> typing.Any:
     # Describers need OpenCV, which takes longer to load than all the rest: only when asked for.
     if name == "Describer":
         from ._vision import Describer
-        return Describer
+        return globals().setdefault(name, _calls.told_in_a_sentence(Describer))
     raise AttributeError(f"module 'seqloop' has no attribute '{name}'")
