@@ -2,6 +2,8 @@
 #include "seqloop/matcher_config.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -14,11 +16,11 @@
 namespace seqloop {
 namespace {
 
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
+/// As few digits as tell it from all others: what is just beyond a limit is not that limit.
+template <class Value>
+std::string number(Value value) {
+  std::array<char, 32> text;
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
 }
 
 void check_range(Faults& faults, const char* name, std::size_t value, std::size_t low,
@@ -134,6 +136,7 @@ Faults validate(const MatcherConfig& config) {
                 believes ? SceneGauge::least_rows : 2, many);
   }
   if (relocalises(config)) {
+    check_range(faults, "relocalising.distances", config.relocalising.distances, 0, many);
     const std::size_t least = velocities_fit ? distances_of_one_range(config) : 0;
     if (config.relocalising.distances != 0 && config.relocalising.distances < least) {
       faults.push_back({"relocalising.distances",
@@ -159,12 +162,12 @@ Faults validate(const MatcherConfig& config) {
   check_range(faults, "standardisation.horizon", config.standardisation.horizon, 1, many);
   check_range(faults, "patience", config.patience, 0, 1'000);
   if (!(config.min_probability > 0.0F && config.min_probability <= 1.0F)) {
-    faults.push_back({"min_probability", number(static_cast<double>(config.min_probability)) +
-                                             " is not above 0 and at most 1"});
+    faults.push_back(
+        {"min_probability", number(config.min_probability) + " is not above 0 and at most 1"});
   }
   if (!(config.max_uniqueness > 0.0F && config.max_uniqueness <= 1.0F)) {
-    faults.push_back({"max_uniqueness", number(static_cast<double>(config.max_uniqueness)) +
-                                            " is not above 0 and at most 1"});
+    faults.push_back(
+        {"max_uniqueness", number(config.max_uniqueness) + " is not above 0 and at most 1"});
   }
   return faults;
 }

@@ -598,6 +598,11 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = -0.1; }), 1U);
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmax = std::nan(""); }), 1U);
   EXPECT_EQ(faults([](MatcherConfig& c) { c.vmin = 1.01, c.vmax = 1.02; }), 1U);
+  EXPECT_EQ(faults([](MatcherConfig& c) { c.relocalising.distances = 1'000'000'000; }), 0U);
+  EXPECT_EQ(faults([](MatcherConfig& c) {
+              c.relocalising.distances = std::numeric_limits<std::size_t>::max();
+            }),
+            1U);
   const MatcherConfig exact = paper(Candidates::all, 20);
   constexpr auto most_places = static_cast<std::size_t>(
       std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
@@ -605,6 +610,17 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
   EXPECT_EQ(validate(Capacity{most_places, std::size_t{1} << 22U}, exact).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values}, {}).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values + 1}, {}).size(), 1U);
+}
+
+TEST(Validate, WhatIsJustBeyondALimitIsNotToldAsTheLimit) {
+  MatcherConfig config;
+  config.min_probability = std::nextafter(1.0F, 2.0F);
+  config.vmin = -1e-9;
+  config.vmax = 1e300;
+  const std::string message = test::setup_error([&] { check(config, {1, 1}); });
+  EXPECT_TRUE(test::says(message, "min_probability: 1.0000001 is not above 0 and at most 1"));
+  EXPECT_TRUE(test::says(message, "vmin: -1e-09 is not between 0 and 10"));
+  EXPECT_TRUE(test::says(message, "vmax: 1e+300 is not between 0 and 10"));
 }
 
 TEST(Validate, RefusesAChoiceThatIsNone) {
