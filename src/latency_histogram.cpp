@@ -24,8 +24,8 @@ Nanoseconds LatencyHistogram::longest_in(std::size_t bucket) noexcept {
 }
 
 Nanoseconds LatencyHistogram::quantile(double share) const noexcept {
-  const auto wanted = static_cast<std::uint64_t>(
-      std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_)));
+  const double within = share > 0.0 ? std::min(share, 1.0) : 0.0;
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(within * static_cast<double>(count_)));
   std::uint64_t seen = 0;
   for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
     seen += buckets_[bucket];

@@ -138,6 +138,7 @@ std::optional<std::size_t> PlaceMap::add_saved_to(std::size_t session,
 /// Puts a place behind the last of a session. @return its row
 std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
                                                        const Saved& place) noexcept {
+  if (session >= order_.sessions()) return std::nullopt;
   const auto [first, last] = order_.session(session);
   const bool follows = order_.may_give(session, place.number) &&
                        (first == last || place.frame > order_.frame(last - 1)) &&

@@ -37,7 +37,7 @@ void check(std::size_t bytes, std::size_t size, std::size_t components) {
                           std::to_string(PrincipalComponents::most_pictures),
                       "train on fewer"});
   }
-  if (pictures < components + 1) {
+  if (components >= pictures) {
     faults.push_back({"components",
                       std::to_string(components) + " cannot be learned from " +
                           std::to_string(pictures) + " training pictures",

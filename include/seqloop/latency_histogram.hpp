@@ -21,7 +21,7 @@ class LatencyHistogram {
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] Nanoseconds maximum() const noexcept { return maximum_; }
 
-  /// @param share 0 .. 1, such as 0.99
+  /// @param share 0 .. 1, such as 0.99; beyond counts as the nearer of these, NaN as 0
   /// @return a duration that at least this share of all does not exceed, up to 1/32 too high, never
   ///   above the maximum; zero when nothing was added
   [[nodiscard]] Nanoseconds quantile(double share) const noexcept;

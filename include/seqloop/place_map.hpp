@@ -88,7 +88,8 @@ class PlaceMap {
   /// has seen meanwhile. A detector at work on the map must take it in itself: `Detector::take_in`.
   /// @param session that has places, or the newest; another than that only where `FullMap` is not
   ///   `refuse`: search keeps no room for maps out of order
-  /// @return its row, from which on rows are counted one higher; none as `add_saved` is false
+  /// @return its row, from which on rows are counted one higher; none as `add_saved` is false, and
+  ///   for a session that is not there
   /// Work: as `add_saved`, and 2 N bytes moved. Allocates: never.
   [[nodiscard]] std::optional<std::size_t> add_saved_to(std::size_t session,
                                                         const Saved& place) noexcept;

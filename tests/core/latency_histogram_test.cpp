@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -39,6 +40,9 @@ TEST(LatencyHistogram, TakesTheLongestAndTheImpossible) {
   histogram.add(Nanoseconds(-5));
   EXPECT_EQ(histogram.quantile(1.0), Nanoseconds::max());
   EXPECT_EQ(histogram.quantile(0.5), Nanoseconds(0));
+  EXPECT_EQ(histogram.quantile(2.0), Nanoseconds::max());
+  EXPECT_EQ(histogram.quantile(-1.0), Nanoseconds(0));
+  EXPECT_EQ(histogram.quantile(std::numeric_limits<double>::quiet_NaN()), Nanoseconds(0));
 }
 
 }  // namespace

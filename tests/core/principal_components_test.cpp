@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "expect_setup_error.hpp"
 
@@ -199,6 +201,8 @@ TEST(PrincipalComponents, RefuseWhatCannotBeLearned) {
   EXPECT_TRUE(says(fault(0, 0, 1), "not all of the same size"));
   EXPECT_TRUE(says(fault(6, 2, 3), "3 cannot be learned from 3 training pictures"));
   EXPECT_TRUE(says(fault(0, 2, 0), "from 0 training pictures"));
+  constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+  EXPECT_TRUE(says(fault(6, 2, most), std::to_string(most) + " cannot be learned"));
   const std::string both = fault(1001, 1, 1001);
   EXPECT_TRUE(says(both, "1001 are more than 1000"));
   EXPECT_TRUE(says(both, "1001 cannot be learned"));

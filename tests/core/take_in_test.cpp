@@ -201,6 +201,24 @@ TEST(TakeIn, OnlyWhatFollows) {
   EXPECT_EQ(map.order().number(3), 10U);
 }
 
+TEST(TakeIn, NothingForASessionThatIsNotThere) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.full_map = FullMap::thin;
+  PlaceMap map(config, {100, 16, 3});
+  const Vectors drive = oracle::drive(1, 3, 16);
+  ASSERT_TRUE(map.add(drive[0]));
+  std::vector<std::byte> saved(map.rows().saved_size());
+  map.rows().save(0, saved);
+  ASSERT_TRUE(map.begin_session());
+  Detector detector(config, map);
+  for (const std::size_t session : {std::size_t{2}, std::size_t{3}, PlaceOrder::far}) {
+    EXPECT_FALSE(detector.take_in(session, {7, 7, saved})) << session;
+    EXPECT_FALSE(map.add_saved_to(session, {7, 7, saved})) << session;
+  }
+  EXPECT_EQ(map.size(), 1U);
+}
+
 TEST(TakeIn, AMapThatKeepsOrderTakesInNothingBetween) {
   const MatcherConfig config;
   PlaceMap map(config, {4, 4, 2});
