@@ -6,9 +6,8 @@
 
 namespace seqloop {
 
-Faults detector_faults(const MatcherConfig& config, const Capacity& capacity) {
-  Faults faults = validate(config);
-  for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
+Faults capacity_faults(const MatcherConfig& config, const Capacity& capacity) {
+  Faults faults = validate(capacity, config);
   if (config.use == Use::close_loops && config.full_map != FullMap::refuse &&
       capacity.places < least_places(config)) {
     faults.push_back({"places",
@@ -16,6 +15,12 @@ Faults detector_faults(const MatcherConfig& config, const Capacity& capacity) {
                       "take " + std::to_string(least_places(config)) +
                           " or more with this exclude and sequence_length"});
   }
+  return faults;
+}
+
+Faults detector_faults(const MatcherConfig& config, const Capacity& capacity) {
+  Faults faults = validate(config);
+  for (Fault& fault : capacity_faults(config, capacity)) faults.push_back(std::move(fault));
   return faults;
 }
 

@@ -91,6 +91,9 @@ TEST_F(BadInput, Numbers) {
   expect_match_refused("--query good.npy --exclude 60", {"exclude", "60"});
   expect_refused("plan --close-loops --exclude 1000001",
                  {"exclude: 1000001 is not between 1 and 1000000"});
+  expect_refused(
+      "plan --close-loops --full-map thin --max-places 10 --fleet-places 2000000",
+      {"max-places: 10 leave no candidates", "with this exclude and ds", "fleet-places"});
   EXPECT_EQ(run("plan --exclude 1000000000").exit_code, 0) << "localising, nothing is remembered";
   expect_match_refused(drives + "--vmin 1.3", {"vmin", "1.3", "vmax", "1.2"});
   expect_match_refused(drives + "--ds 10 --vmin 1.01 --vmax 1.02", {"velocity", "widen"});

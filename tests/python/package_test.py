@@ -422,6 +422,9 @@ class Lives(unittest.TestCase):
             seqloop.PlaceMap(-1, 0, ds=-1)
         self.assertEqual(len(raised.exception.faults), 3)
         self.assertRegex(str(raised.exception), "(?s)max_places: -1 is not between 1 and .*descriptor_size: 0 is not")
+        with self.assertRaisesRegex(seqloop.SetupError, "(?s)descriptor_size: 0 .*max_places: 10 leave no candidates .*"
+                                    "take 58 or more with this exclude and ds$"):
+            seqloop.PlaceMap(10, 0, close_loops=True, full_map="thin")
         self.assertEqual((len(empty), empty.capacity, empty.descriptor_size), (200, 200, 48))
 
     def test_daemon_threads_end_with_the_program(self) -> None:

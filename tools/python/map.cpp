@@ -13,6 +13,7 @@
 #include "program/options/verb.hpp"
 #include "python/interpreter_lock.hpp"
 #include "python/recordings.hpp"
+#include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
 
@@ -30,7 +31,7 @@ std::size_t size_of(std::int64_t value) {
 
 void check(Faults& faults, std::int64_t places, std::int64_t descriptor_size,
            const MatcherConfig& config) {
-  for (Fault& fault : validate({size_of(places), size_of(descriptor_size)}, config)) {
+  for (Fault& fault : capacity_faults(config, {size_of(places), size_of(descriptor_size)})) {
     // What is below 0 was looked at as 0.
     const std::int64_t given = fault.what == "places"            ? places
                                : fault.what == "descriptor_size" ? descriptor_size

@@ -7,8 +7,11 @@
 
 namespace seqloop {
 
-/// @return everything that keeps a detector with this configuration from working, whatever map of
-/// this capacity it is given
+/// @return everything that keeps a map of this capacity from being one for a detector with this
+/// configuration; what is wrong with the configuration itself is not among it
+[[nodiscard]] Faults capacity_faults(const MatcherConfig& config, const Capacity& capacity);
+
+/// The same, and what is wrong with the configuration.
 [[nodiscard]] Faults detector_faults(const MatcherConfig& config, const Capacity& capacity);
 
 /// @return everything that keeps a detector with this configuration from working on this map

@@ -11,6 +11,7 @@
 #include "program/fleet/through_own.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/detector.hpp"
 
 namespace seqloop::program {
@@ -68,7 +69,7 @@ void plan(const PlanSettings& settings, Faults faults) {
       resolve(settings.matcher, settings.close_loops ? Use::close_loops : Use::localise, faults);
   suit_slice(config, settings.matcher, settings.places);
   const Capacity capacity{settings.places, settings.descriptor_size};
-  for (Fault& fault : validate(capacity, config)) faults.push_back(std::move(fault));
+  for (Fault& fault : capacity_faults(config, capacity)) faults.push_back(std::move(fault));
   if (settings.fleet_places > most_fleet_places) {
     faults.push_back({"fleet-places", fmt::format("at most {}", most_fleet_places)});
   }
