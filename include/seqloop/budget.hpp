@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "seqloop/pipeline.hpp"
@@ -35,7 +36,7 @@ enum class OverloadPolicy : std::uint8_t {
   every_nth     ///< takes up every n-th frame only, so that gaps are even
 };
 
-/// When a loop is overloaded, and what it does then.
+/// When a loop is overloaded, and what it does then. Numbers below their least count as that.
 struct OverloadRule {
   OverloadPolicy policy = OverloadPolicy::drop_oldest;
   std::uint32_t every = 2;     ///< n of `every_nth`, at least 2
@@ -46,7 +47,9 @@ struct OverloadRule {
 /// Tells a loop that is overloaded from one that is late now and then.
 class OverloadWatch {
  public:
-  explicit OverloadWatch(const OverloadRule& rule) noexcept : rule_(rule) {}
+  explicit OverloadWatch(const OverloadRule& rule) noexcept
+      : rule_{rule.policy, std::max<std::uint32_t>(rule.every, 2),
+              std::max<std::uint32_t>(rule.after, 1), std::max<std::uint32_t>(rule.recover, 1)} {}
 
   /// @param missed whether the frame broke its budget
   /// @return whether this began or ended an overload. Allocates: never.

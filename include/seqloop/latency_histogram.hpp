@@ -34,7 +34,8 @@ class LatencyHistogram {
     return buckets_[bucket];
   }
 
-  /// @return the longest duration that falls into the bucket
+  /// @param bucket below `buckets`
+  /// @return the longest duration that falls into it
   [[nodiscard]] static Nanoseconds longest_in(std::size_t bucket) noexcept;
 
  private:

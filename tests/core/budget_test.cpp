@@ -59,6 +59,16 @@ TEST(OverloadWatch, EndsByItself) {
   EXPECT_EQ(watch.episodes(), 2U);
 }
 
+TEST(OverloadWatch, TakesWhatIsTooLittleForTheLeast) {
+  OverloadWatch watch({.policy = OverloadPolicy::every_nth, .every = 0, .after = 0, .recover = 0});
+  EXPECT_FALSE(watch.observe(false)) << "nothing was missed";
+  EXPECT_TRUE(watch.observe(true));
+  EXPECT_EQ(watch.take_every(), 2U);
+  EXPECT_FALSE(watch.observe(true));
+  EXPECT_TRUE(watch.observe(false));
+  EXPECT_EQ(watch.take_every(), 1U);
+}
+
 TEST(OverloadWatch, ThinsOutOnlyWhereThatIsThePolicy) {
   OverloadWatch watch({.after = 1});
   EXPECT_TRUE(watch.observe(true));
