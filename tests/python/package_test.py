@@ -288,6 +288,7 @@ class Arrays(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "^" + words) as raised:
                 call()  # type: ignore[call-arg,no-untyped-call]
             self.assertLess(len(str(raised.exception)), 110)
+        self.assertIn("Detector.step", repr(self.detector.step))
         self.assertEqual(self.detector.step(None).newest, 0, "what was refused is no frame")
 
     def test_read_only_arrays_are_read_where_they_lie(self) -> None:

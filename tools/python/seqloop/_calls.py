@@ -13,6 +13,7 @@ def _as_python_would(take: typing.Any, function: typing.Any) -> typing.Any:
     def call(*given: typing.Any, **named: typing.Any) -> typing.Any:
         take(*given, **named)
         return function(*given, **named)
+    call.__qualname__ = take.__qualname__
     return call
 
 
