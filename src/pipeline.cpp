@@ -61,8 +61,9 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   processed.descriptor = seen.descriptor;
   processed.fault = seen.fault;
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
-    processed.fault =
-        "its descriptor is blank, not finite, not of unit length, or of the wrong size";
+    processed.fault = seen.descriptor.size() != detector_->descriptor_size()
+                          ? "its descriptor is of another size than the map's"
+                          : "its descriptor is blank, not finite, or not of unit length";
   }
   processed.times.age = processed.frame.age;
   processed.times.grab = grabbed - began - processed.frame.waited;

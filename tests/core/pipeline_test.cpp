@@ -156,6 +156,34 @@ TEST(Pipeline, SaysThatADescriptorIsNotFinite) {
   EXPECT_NE(processed->fault.find("not finite"), std::string_view::npos) << processed->fault;
 }
 
+/// A recording that was described before, by something else.
+class DescribedFake : public FakeSource {
+ public:
+  using FakeSource::FakeSource;
+
+  Grab grab(Frame& frame) noexcept override {
+    const Grab grab = FakeSource::grab(frame);
+    frame.descriptor = descriptor_;
+    return grab;
+  }
+
+ private:
+  std::vector<float> descriptor_{1.0F, 0.0F};
+};
+
+TEST(Pipeline, SaysThatARecordedDescriptorIsOfAnotherSize) {
+  const MatcherConfig config = paper(Candidates::all, 6);
+  PlaceMap map = map_of(oracle::drive(3, 30, 16), config);
+  Detector detector(config, map);
+  DescribedFake source(1);
+  FakeClock clock;
+  Pipeline pipeline(source, nullptr, detector, clock, 16);
+  const auto processed = pipeline.process();
+  ASSERT_TRUE(processed);
+  EXPECT_EQ(processed->report.gate, Gate::frame_error);
+  EXPECT_EQ(processed->fault, "its descriptor is of another size than the map's");
+}
+
 TEST(Pipeline, SaysWhichSizesDifferBeforeTheFirstFrame) {
   const MatcherConfig config = paper(Candidates::all, 6);
   PlaceMap map = map_of(oracle::drive(3, 30, 16), config);
