@@ -168,6 +168,47 @@ TEST_F(Experiments, SayWhatDescribeMatchAndEvalSay) {
   expect_like_the_verbs("theirs", "patches", "--method seqslam --ds 4", 4);
 }
 
+/// Numbers over two kinds of threshold stand side by side, and nobody would see it.
+TEST_F(Experiments, SayWhatTheirCurvesSweep) {
+  write_experiment(std::string(drives) + pair + R"(
+[[method]]
+name = "by uniqueness"
+method = "seqcnnslam"
+descriptor = "gradients"
+ds = 4
+[[method]]
+name = "by score"
+method = "seqcnnslam"
+descriptor = "gradients"
+ds = 4
+threshold-on = "score"
+[[table]]
+title = "Numbers"
+rows = ["method", "threshold-on"]
+values = ["recall_at_100_precision"]
+where = { threshold-on = ["score", "uniqueness"] }
+)");
+  expect_done();
+  const std::string results = test::read_all(file("out/results.csv"));
+  EXPECT_EQ(results.find("pair,method,descriptor,algorithm,ds,threshold-on,"), 0U) << results;
+  EXPECT_NE(results.find("both,by uniqueness,gradients,seqcnnslam,4,uniqueness,"), results.npos)
+      << results;
+  EXPECT_NE(results.find("both,by score,gradients,seqcnnslam,4,score,"), results.npos) << results;
+  EXPECT_NE(test::read_all(file("out/index.html")).find("threshold-on"), std::string::npos);
+}
+
+TEST_F(Experiments, SweepNoProbabilityWhereNoneIsSaid) {
+  write_experiment("threshold-on = \"probability\"\n" + std::string(drives) + pair + methods);
+  const std::string err = run_it().err;
+  for (const char* name : {"ranges", "theirs"}) {
+    EXPECT_NE(err.find(fmt::format("method '{}': threshold-on: the uniqueness decides", name)),
+              std::string::npos)
+        << err;
+  }
+  EXPECT_EQ(err.find("method 'ours'"), std::string::npos) << err;
+  EXPECT_FALSE(exists("out"));
+}
+
 TEST_F(Experiments, GoOnWhereTheyWere) {
   write_experiment(std::string(drives) + pair + methods);
   // A small limit on file sizes is a disk that is full after the first descriptors.

@@ -598,6 +598,18 @@ TEST_F(Run, EvalMeasuresByTheBook) {
   }
 }
 
+/// The only point of such a curve would pass for what the method can do.
+TEST_F(Run, EvalSaysWhereThereIsNothingToSweep) {
+  const auto said = [&](const std::string& rows) {
+    folder_.write("m.csv", "query,match,score,uniqueness,probability,accepted\n" + rows);
+    return expect_done("eval --json --matches m.csv --frames 2 --threshold-on probability").err;
+  };
+  EXPECT_NE(said("0,0,0.9,0.1,nan,1\n1,7,0.1,0.2,nan,0\n").find("no answer has a probability"),
+            std::string::npos);
+  EXPECT_EQ(said("0,0,0.9,0.1,nan,1\n1,7,0.1,0.2,.5,0\n"), "");
+  EXPECT_EQ(said(""), "");
+}
+
 TEST_F(Run, EvalMeasuresWhatIsAcceptedAndHowSurely) {
   folder_.write("m.csv",
                 "query,match,score,uniqueness,probability,accepted\n0,0,0.9,0.1,1,1\n"

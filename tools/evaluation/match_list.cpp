@@ -17,19 +17,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Of the column and the key.
-std::string name_of(ThresholdOn threshold_on) {
-  switch (threshold_on) {
-    case ThresholdOn::score:
-      return "score";
-    case ThresholdOn::probability:
-      return "probability";
-    case ThresholdOn::uniqueness:
-      break;
-  }
-  return "uniqueness";
-}
-
 std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) {
   const std::vector<std::size_t> columns = table.columns({"query", "match", swept});
   const std::optional<std::size_t> probability = table.find("probability");
@@ -128,6 +115,18 @@ std::vector<Answer> from_lines(std::string_view text, const std::string& name,
 }
 
 }  // namespace
+
+std::string name_of(ThresholdOn threshold_on) {
+  switch (threshold_on) {
+    case ThresholdOn::score:
+      return "score";
+    case ThresholdOn::probability:
+      return "probability";
+    case ThresholdOn::uniqueness:
+      break;
+  }
+  return "uniqueness";
+}
 
 double uncertainty(ThresholdOn threshold_on, double value) noexcept {
   return threshold_on == ThresholdOn::probability ? -value : value;

@@ -26,6 +26,9 @@ struct Answer {
 /// smaller uniqueness or score.
 enum class ThresholdOn : std::uint8_t { uniqueness, score, probability };
 
+/// Of the column, the key and the setting.
+[[nodiscard]] std::string name_of(ThresholdOn threshold_on);
+
 /// @param value of the number that is swept
 /// @return `Answer::uncertainty`
 [[nodiscard]] double uncertainty(ThresholdOn threshold_on, double value) noexcept;

@@ -315,6 +315,14 @@ class Reader {
           if (setting.name == "descriptor") setting.name = "kind";
           run.settings.push_back(std::move(setting));
         }
+        // Measures that go by a threshold compare only where it is known which one.
+        run.settings.push_back({"threshold-on", name_of(threshold_on)});
+        if (threshold_on == evaluation::ThresholdOn::probability &&
+            run.config.decision == Decision::uniqueness) {
+          faults.push_back({"threshold-on",
+                            "the uniqueness decides, and no answer has a probability",
+                            "threshold-on = \"uniqueness\" in this [[method]]"});
+        }
         experiment_.runs.push_back(std::move(run));
       }
     }

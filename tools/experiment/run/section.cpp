@@ -100,7 +100,7 @@ void Section::set(const program::OptionTable& options,
 }
 
 void Section::check_setting(const std::string& name) const {
-  Names known{"pair", "method", "descriptor", "algorithm", "kind"};
+  Names known{"pair", "method", "descriptor", "algorithm", "kind", "threshold-on"};
   program::MatcherSettings matcher;
   program::DriveSettings drive;
   program::OptionTable options;

@@ -103,12 +103,11 @@ void print_words(const evaluation::Measures& measures, std::uint64_t frames,
 
 void eval_matches(const EvalSettings& settings, Faults faults) {
   std::vector<evaluation::Answer> answers;
+  const evaluation::ThresholdOn threshold_on =
+      settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness);
   if (settings.matches.empty()) faults.push_back({"matches", "not given", "--matches M.csv"});
   if (!settings.matches.empty()) {
-    collect(faults, [&] {
-      answers = evaluation::read_answers(
-          settings.matches, settings.threshold_on.value_or(evaluation::ThresholdOn::uniqueness));
-    });
+    collect(faults, [&] { answers = evaluation::read_answers(settings.matches, threshold_on); });
   }
   const JudgedBy judge = judge_by(settings.truth, read_truth(settings.truth, faults),
                                   settings.frames, answers, faults);
@@ -117,6 +116,13 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
     say("recall is over the first {} frames only, as far as the answers reach; --frames N says how "
         "many the drive has",
         judge.frames);
+  }
+  const auto unswept = [](const evaluation::Answer& answer) {
+    return std::isnan(answer.uncertainty);
+  };
+  if (!answers.empty() && std::ranges::all_of(answers, unswept)) {
+    say("no answer has a {}, so that all enter the curve at once; choose another --threshold-on",
+        name_of(threshold_on));
   }
   const evaluation::Measures measures =
       measure(answers, judge.truth, tolerance(settings.truth), judge.frames);
