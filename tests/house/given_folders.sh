@@ -6,9 +6,9 @@
 set -eu
 work=$(realpath "$(mktemp -d)")
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/checkout/tools" "$work/bin" "$work/here"
-for tool in demo docs package cross tidy test; do
-  cp "$1/tools/$tool" "$work/checkout/tools"
+mkdir -p "$work/checkout/tools/experiments" "$work/bin" "$work/here"
+for tool in demo docs package cross tidy test accuracy benchmarks experiments/run; do
+  cp "$1/tools/$tool" "$work/checkout/tools/$tool"
 done
 printf '#!/bin/sh\nexit 9\n' >"$work/bin/cmake"
 chmod +x "$work/bin/cmake"
@@ -27,7 +27,8 @@ for call in 'sh demo out' 'bash docs out' 'bash package out' 'bash cross aarch64
   fi
 done
 for call in 'sh demo --help' 'bash docs -h' 'bash package --help' 'bash cross --help' 'bash cross aarch64 --help' \
-  'sh tidy --help' 'bash test --help' 'bash test unit' 'bash test -L'; do
+  'sh tidy --help' 'bash test --help' 'bash test unit' 'bash test -L' 'bash accuracy --help' \
+  'bash benchmarks' 'bash benchmarks --help' 'sh experiments/run --help'; do
   # shellcheck disable=SC2086 # a word each
   set -- $call
   shell=$1 tool=$2
@@ -40,3 +41,11 @@ for call in 'sh demo --help' 'bash docs -h' 'bash package --help' 'bash cross --
     exit 1
   fi
 done
+# What a tool wants of a folder that is not as it should be is told at once.
+code=0
+bash ../checkout/tools/accuracy nowhere >"$work/said" 2>&1 || code=$?
+if [ "$code" != 2 ] || [ "$(grep -c '^accuracy: .* is not there; ' "$work/said")" != 5 ]; then
+  cat "$work/said"
+  echo "tools/accuracy nowhere does not name the program and the four drives that are missing"
+  exit 1
+fi
