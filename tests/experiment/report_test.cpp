@@ -79,6 +79,28 @@ TEST(Report, SummaryShowsTheBestSettingsAndTheBestOfAPair) {
   EXPECT_TRUE(has(summary, "<td>.444</td>"));    // alone on q
 }
 
+TEST(Report, SummaryTellsCurvesOverDifferentNumbersApart) {
+  Report report = small_report();
+  for (Result& result : report.results) result.settings.push_back({"threshold-on", "uniqueness"});
+  const auto summary = [&] {
+    const std::string page = written(report).at("index.html");
+    return page.substr(0, page.find("<h2>Figures"));
+  };
+  EXPECT_FALSE(has(summary(), "threshold-on"));
+  report.results[2].settings.back().value = "probability";
+  EXPECT_TRUE(has(summary(), "<th scope=\"col\">threshold-on</th>"));
+  EXPECT_TRUE(has(summary(), "<th scope=\"row\">probability</th>"));
+}
+
+/// Runs at once slow each other down: the least seconds are nobody's merit.
+TEST(Report, SecondsAreBestAloneOnly) {
+  Report report = small_report();
+  report.results[2].seconds = 1.25;
+  EXPECT_FALSE(has(written(report).at("index.html"), "<b>1.25</b>"));
+  for (Result& result : report.results) result.alone = true;
+  EXPECT_TRUE(has(written(report).at("index.html"), "<b>1.25</b>"));
+}
+
 TEST(Report, TablesPutResultsWhereTheyBelong) {
   Report report = small_report();
   report.tables = {{"Two", "", {"method"}, {"pair", "ds"}, {"recall", "seconds"}, {}}};

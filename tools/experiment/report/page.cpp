@@ -63,6 +63,8 @@ std::string summary(const Chosen& all) {
                   "seconds",
                   "speed_up"};
   for (std::string& name : unnamed_differences(all, table.rows)) table.rows.push_back(name);
+  // Nobody sees from a method's name over what its R@100P and its area are.
+  if (keys_of(all, {"threshold-on"}).size() > 1) table.rows.emplace_back("threshold-on");
   return table_html(best_results(all), table,
                     "For each method the settings with the highest recall at 100 % precision "
                     "(R@100P). The best of each pair is bold.",

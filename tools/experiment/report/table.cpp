@@ -55,6 +55,7 @@ Bests find_bests(const Chosen& results, const Grid& grid) {
     for (const Column& value : grid.values) {
       const double number = number_of(*result, value.name);
       if (value.better == Better::neither || std::isnan(number)) continue;
+      if (value.unit == Unit::seconds && !result->alone) continue;  // others slowed it down
       numbers[{result->pair, key_of(*result, grid.table.columns), value.name}].push_back(number);
     }
   }
