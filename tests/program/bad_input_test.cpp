@@ -508,6 +508,10 @@ TEST_F(BadInput, MatchListsAndTruths) {
   expect_refused("eval --matches list.csv", {"uniqueness"});
   folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5\n");
   expect_refused("eval --matches list.csv", {"list.csv:2", "3 cells"});
+  folder_.write("list.csv", "query,match,score,uniqueness\n1,1\n2,x,0.5,0.5\n3,\"3,1,1\n4\n");
+  expect_refused("eval --matches list.csv",
+                 {"list.csv:2: 2 cells under a header of 4", "list.csv:3: 'x' under 'match'",
+                  "list.csv:4: a cell in quotes", "list.csv:5: 1 cell under"});
   folder_.write("list.csv", "");
   expect_refused("eval --matches list.csv --truth none.csv", {"list.csv", "none.csv"});
   expect_refused("eval --threshold-on x", {"threshold-on", "--matches"});

@@ -67,7 +67,6 @@ bool parse(const std::string& cell, Number& value) {
 }  // namespace
 
 CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(name)) {
-  LineFaults faults(name_);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
@@ -79,17 +78,19 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
       take_header(line, where);
       continue;
     }
-    faults.collect([&] {
+    line_numbers_.push_back(number);
+    lines_.emplace_back();
+    try {
       std::vector<std::string> found = cells(line, where);
       if (found.size() != header_.size()) {
-        throw SetupError({where, std::to_string(found.size()) + " cells under a header of " +
-                                     std::to_string(header_.size())});
+        throw SetupError({where, fmt::format("{} cell{} under a header of {}", found.size(),
+                                             found.size() == 1 ? "" : "s", header_.size())});
       }
-      lines_.push_back(std::move(found));
-      line_numbers_.push_back(number);
-    });
+      lines_.back() = std::move(found);
+    } catch (const SetupError& error) {
+      wrong_[lines_.size() - 1] = error.faults();
+    }
   }
-  faults.refuse();
   if (header_.empty()) throw SetupError({name_, "empty: not even a header line"});
 }
 
@@ -144,7 +145,13 @@ std::vector<std::size_t> CsvTable::columns(const std::vector<std::string>& heade
 
 void CsvTable::for_each_row(const std::function<void(std::size_t)>& read) const {
   LineFaults faults(name_);
-  for (std::size_t row = 0; row < rows(); ++row) faults.collect([&] { read(row); });
+  for (std::size_t row = 0; row < rows(); ++row) {
+    faults.collect([&] {
+      if (const auto wrong = wrong_.find(row); wrong != wrong_.end())
+        throw SetupError(wrong->second);
+      read(row);
+    });
+  }
   faults.refuse();
 }
 

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
 
@@ -15,7 +18,7 @@ namespace seqloop::evaluation {
 class CsvTable {
  public:
   /// @param name the file, for messages. Throws SetupError: no header, one with a column twice or
-  /// without commas; a handful of the lines with too few or too many cells.
+  /// without commas. Lines with too few or too many cells are rows, and told by `for_each_row`.
   CsvTable(std::string_view text, std::string name);
 
   /// Throws SetupError when the file cannot be read, and as above.
@@ -39,7 +42,8 @@ class CsvTable {
   /// Likewise, of several. Throws SetupError with all that are missing.
   [[nodiscard]] std::vector<std::size_t> columns(const std::vector<std::string>& headers) const;
 
-  /// Calls `read` for each row. Throws SetupError with a handful of what it throws.
+  /// Calls `read` for each row that has as many cells as the header; all that reads cells is called
+  /// from there. Throws SetupError with a handful of the other rows and of what `read` throws.
   void for_each_row(const std::function<void(std::size_t)>& read) const;
 
   /// Throw SetupError, with the line, for a cell that is no such number.
@@ -60,6 +64,7 @@ class CsvTable {
   std::vector<std::string> header_;
   std::vector<std::vector<std::string>> lines_;
   std::vector<std::size_t> line_numbers_;
+  std::map<std::size_t, Faults> wrong_;  // by row, which has no cells
 };
 
 }  // namespace seqloop::evaluation
