@@ -567,6 +567,22 @@ best-of = "ds"
   EXPECT_EQ(table.whole(0, table.column("frames")), 40U);
 }
 
+/// What the file calls `method` here, results call the algorithm.
+TEST_F(Experiments, RankAlgorithms) {
+  write_experiment(std::string(drives) + pair + R"(
+[[method]]
+name = "either"
+method = ["seqcnnslam", "a-seqcnnslam"]
+descriptor = "gradients"
+ds = 4
+best-of = "method"
+)");
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 3U) << "two, and the best of them";
+  EXPECT_NE(test::read_all(file("out/results.csv")).find("both,either (best),"), std::string::npos);
+}
+
 TEST_F(Experiments, SeveralQueryDrivesAreMatchedAsOne) {
   write_experiment(drives + std::string(R"(
 [[pair]]

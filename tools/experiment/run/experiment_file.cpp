@@ -27,6 +27,11 @@ Names names_of(const std::vector<Named>& all) {
   return names;
 }
 
+/// What a key is called in results, where `method` and `descriptor` are the names of sections.
+std::string name_in_results(const std::string& key) {
+  return key == "method" ? "algorithm" : key == "descriptor" ? "kind" : key;
+}
+
 bool has(const Names& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -234,7 +239,7 @@ class Reader {
     if (best_of.size() > 1) section.refuse("'best-of' is one setting");
     for (const std::string& setting : best_of) {
       section.check_setting(setting);
-      experiment_.best_of.push_back({name, setting});
+      experiment_.best_of.push_back({name, name_in_results(setting)});
     }
     const evaluation::ThresholdOn threshold_on = read_threshold(section);
     program::MatcherSettings none;
@@ -277,12 +282,15 @@ class Reader {
   [[nodiscard]] bool is_swept(const std::string& setting,
                               const std::vector<program::WrittenOption>& written,
                               const Names& descriptors) const {
+    const std::string wanted = name_in_results(setting);
     const auto by_method = [&](const program::WrittenOption& option) {
-      return option.option->name == setting && option.values.size() > 1;
+      return name_in_results(option.option->name) == wanted && option.values.size() > 1;
     };
     const auto by_descriptor = [&](const DescriptorSpec& descriptor) {
       return has(descriptors, descriptor.name) &&
-             std::ranges::find(descriptor.swept, setting, &Setting::name) != descriptor.swept.end();
+             std::ranges::any_of(descriptor.swept, [&](const Setting& swept) {
+               return name_in_results(swept.name) == wanted;
+             });
     };
     return std::ranges::any_of(written, by_method) ||
            std::ranges::any_of(experiment_.descriptors, by_descriptor);
@@ -307,14 +315,8 @@ class Reader {
         if (!has(pairs, pair.name)) continue;
         const Use use = pair.reference.empty() ? Use::close_loops : Use::localise;
         RunSpec run{method, d, p, threshold_on, matcher, resolve(matcher, use, faults), chosen};
-        for (Setting& setting : run.settings) {
-          // In the report a method is what the file calls it.
-          if (setting.name == "method") setting.name = "algorithm";
-        }
-        for (Setting setting : descriptor.swept) {
-          if (setting.name == "descriptor") setting.name = "kind";
-          run.settings.push_back(std::move(setting));
-        }
+        run.settings.insert(run.settings.end(), descriptor.swept.begin(), descriptor.swept.end());
+        for (Setting& setting : run.settings) setting.name = name_in_results(setting.name);
         // Measures that go by a threshold compare only where it is known which one.
         run.settings.push_back({"threshold-on", name_of(threshold_on)});
         if (threshold_on == evaluation::ThresholdOn::probability &&
