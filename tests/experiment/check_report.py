@@ -69,8 +69,9 @@ def table_faults(table) -> list[str]:
 
 
 def main(folder: pathlib.Path) -> int:
-    found = []
-    for path in sorted(folder.glob("*.svg")) + sorted(folder.glob("*.html")):
+    paths = sorted(folder.glob("*.svg")) + sorted(folder.glob("*.html"))
+    found = [] if paths else [f"{folder}: no report is there"]
+    for path in paths:
         try:
             root = ElementTree.fromstring(path.read_bytes())
         except ElementTree.ParseError as error:

@@ -210,6 +210,7 @@ TEST(Report, CheckFindsFaults) {
   EXPECT_TRUE(refused(start + "aria-label='a'><text x='10' y='1'>a</text></svg>"));
   EXPECT_TRUE(refused(start + ">" + name + "</svg>"));
   EXPECT_TRUE(refused(start + "aria-label='a'>"));
+  EXPECT_FALSE(sound(folder.path() / "none", "/dev/null"));
 }
 
 // Bad input: a folder that cannot be one.
