@@ -105,6 +105,16 @@ class Guessing(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
 
+    def test_the_comparison_knows_its_drives_before_it_works(self) -> None:
+        done = subprocess.run([sys.executable, "-B", SOURCE / "tools/peers", self.work / "out", "--data", self.work,
+                               "--street", "-1", "--only", "gardens,streets"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        for words in ("--street -1: 0 or more", "--only streets: no such drive; there are gardens, gardens-loop",
+                      "day_left: is not there"):
+            self.assertIn(words, done.stderr)
+        self.assertNotIn("--only gardens", done.stderr)
+        self.assertFalse((self.work / "out").exists())
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
