@@ -80,7 +80,7 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
     return test::setup_error([&] { (void)answers(text); });
   };
   const std::string good = "{\"frame\":1,\"match\":2,\"uniqueness\":0.5}\n";
-  EXPECT_TRUE(test::says(refused(good + good), "r.jsonl: query 1 is answered twice"));
+  EXPECT_TRUE(test::says(refused(good + good), "r.jsonl:2: query 1 is answered twice"));
   EXPECT_TRUE(test::says(refused(good + "{\"frame\":"), "r.jsonl:2: is no JSON object"));
   EXPECT_TRUE(test::says(refused(good + "\n[]\n"), "r.jsonl:3: is no JSON object"));
   EXPECT_TRUE(test::says(refused("{\"frame\":1,\"match\":2}"), "r.jsonl:1: no 'uniqueness'"));

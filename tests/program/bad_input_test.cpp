@@ -501,7 +501,12 @@ TEST_F(BadInput, AbsurdFrameNumbersCostNothing) {
 
 TEST_F(BadInput, MatchListsAndTruths) {
   folder_.write("list.csv", "query,match,score,uniqueness\n1,1,0.5,0.5\n1,2,0.5,0.5\n");
-  expect_refused("eval --matches list.csv", {"twice"});
+  expect_refused("eval --matches list.csv", {"list.csv:3: query 1 is answered twice"});
+  folder_.write("lines.jsonl", R"({"frame": 1, "match": 1, "uniqueness": 0.5}
+{"frame": 1, "match": 2, "uniqueness": 0.5}
+{"frame": 2, "match": "x", "uniqueness": 0.5})");
+  expect_refused("eval --matches lines.jsonl",
+                 {"lines.jsonl:2: query 1 is answered twice", "lines.jsonl:3: 'match'"});
   folder_.write("list.csv", "query,match,score,uniqueness\n1,one,0.5,0.5\n");
   expect_refused("eval --matches list.csv", {"list.csv:2", "'one'"});
   folder_.write("list.csv", "query,match\n1,1\n");

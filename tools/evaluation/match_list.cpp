@@ -17,11 +17,29 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Answers, each to another query.
+class Answers {
+ public:
+  /// Throws SetupError: the query has an answer.
+  void add(Answer answer, const std::string& where) {
+    if (!queries_.insert(answer.query).second) {
+      throw SetupError({where, "query " + std::to_string(answer.query) + " is answered twice"});
+    }
+    answers_.push_back(answer);
+  }
+
+  [[nodiscard]] std::vector<Answer> take() { return std::move(answers_); }
+
+ private:
+  std::vector<Answer> answers_;
+  std::set<std::uint64_t> queries_;
+};
+
 std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) {
   const std::vector<std::size_t> columns = table.columns({"query", "match", swept});
   const std::optional<std::size_t> probability = table.find("probability");
   const std::optional<std::size_t> accepted = table.find("accepted");
-  std::vector<Answer> answers;
+  Answers answers;
   table.for_each_row([&](std::size_t row) {
     Answer answer{table.whole(row, columns[0]), table.whole(row, columns[1]),
                   table.number(row, columns[2])};
@@ -29,9 +47,9 @@ std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) 
       answer.probability = table.number_within(row, *probability, 0.0, 1.0);
     }
     if (accepted) answer.accepted = table.flag(row, *accepted);
-    answers.push_back(answer);
+    answers.add(answer, table.where(row));
   });
-  return answers;
+  return answers.take();
 }
 
 /// Answers of `run`'s lines.
@@ -52,7 +70,7 @@ class Lines {
     }
   }
 
-  std::vector<Answer> answers;
+  Answers answers;
 
  private:
   void add(const Json& answer) {
@@ -69,7 +87,7 @@ class Lines {
     if (const auto status = answer.find("status"); status != answer.end()) {
       found.accepted = *status == "match";
     }
-    answers.push_back(found);
+    answers.add(found, where_);
   }
 
   /// NaN where it is null.
@@ -111,7 +129,7 @@ std::vector<Answer> from_lines(std::string_view text, const std::string& name,
     faults.collect([&] { lines.take(line, number); });
   }
   faults.refuse();
-  return std::move(lines.answers);
+  return lines.answers.take();
 }
 
 }  // namespace
@@ -139,12 +157,8 @@ std::vector<Answer> parse_answers(std::string_view text, const std::string& name
   const std::string swept = name_of(threshold_on);
   std::vector<Answer> answers =
       json ? from_lines(text, name, swept) : from_table(CsvTable(text, name), swept);
-  std::set<std::uint64_t> seen;
   for (Answer& answer : answers) {
     answer.uncertainty = uncertainty(threshold_on, answer.uncertainty);
-    if (!seen.insert(answer.query).second) {
-      throw SetupError({name, "query " + std::to_string(answer.query) + " is answered twice"});
-    }
   }
   return answers;
 }
