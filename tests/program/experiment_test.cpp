@@ -637,6 +637,16 @@ panel = "pair"
     EXPECT_EQ(number(3, same), number(0, same)) << same;
   }
   EXPECT_TRUE(exists("out/figure-1-said.svg"));
+  // What is right is another thing for each of them.
+  const std::string page = test::read_all(file("out/index.html"));
+  for (const char* words : {"<dt>there and again</dt><dd>first, then second, closing loops; truth: "
+                            "identity, within 1 frames</dd>",
+                            "<dd>first, closing loops; every answer is wrong</dd>",
+                            "truth: t.csv, within 2 frames, or a row's own tolerance; frames "
+                            "that it does not list are not judged",
+                            "truth: positions, within 1.5 metres</dd>"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
 }
 
 TEST_F(Experiments, RefuseWhatDoesNotGoWithSeveralQueryDrives) {

@@ -167,6 +167,7 @@ std::string page_html(const Report& report, const std::vector<Chart>& charts,
                                            "<div class=\"matrices\">\n" + matrices + "</div>\n");
   }
   html += section("All results", all_results(all));
+  if (!report.pairs.empty()) html += section("Pairs of drives", conditions(report.pairs));
   return html + section("Conditions", conditions(report.conditions)) +
          "</main>\n</body>\n</html>\n";
 }

@@ -93,6 +93,7 @@ struct Report {
   std::vector<Figure> figures;
   std::vector<Table> tables;
   std::vector<MatrixPicture> matrices;
+  std::vector<Setting> pairs{};  ///< of each pair: its drives, and which answers are right
 };
 
 /// @param name `pair`, `method`, `descriptor`, or a setting's name

@@ -2,6 +2,7 @@
 #include "experiment/run/pair_truth.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -60,6 +61,21 @@ evaluation::Truth pair_truth(const PairSpec& pair, const PairLengths& lengths, F
   check_reach(pair, "query", truth.queries_reach(), lengths.query(), faults);
   check_reach(pair, "reference", truth.places_reach(), lengths.map(pair), faults);
   return truth;
+}
+
+std::string how_judged(const PairSpec& pair) {
+  std::string text = fmt::format("{}", fmt::join(pair.queries, ", then "));
+  text += pair.reference.empty() ? ", closing loops" : " in " + pair.reference;
+  if (pair.truth.file == "no-revisit") return text + "; every answer is wrong";
+  const bool by_frame = by_identity(pair.truth);
+  const std::string source = by_file(pair.truth) ? pair.truth.file.filename().string()
+                             : by_frame          ? "identity"
+                                                 : "positions";
+  text += fmt::format("; truth: {}, within {}{}", source, how_near(pair.truth, {}),
+                      by_file(pair.truth) ? ", or a row's own tolerance" : "");
+  return pair.truth.unlisted == evaluation::Unlisted::unknown
+             ? text + "; frames that it does not list are not judged"
+             : text;
 }
 
 }  // namespace seqloop::experiment

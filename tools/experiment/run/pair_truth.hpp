@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "evaluation/truth.hpp"
@@ -28,5 +29,8 @@ struct PairLengths {
 /// different length whose frames i are said to belong together.
 [[nodiscard]] evaluation::Truth pair_truth(const PairSpec& pair, const PairLengths& lengths,
                                            Faults& faults);
+
+/// What is matched with what, and which answers are right, in words for a report.
+[[nodiscard]] std::string how_judged(const PairSpec& pair);
 
 }  // namespace seqloop::experiment

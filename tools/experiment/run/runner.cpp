@@ -100,6 +100,9 @@ class Runner {
                                  {png.begin(), png.end()}});
     }
     report.conditions = conditions(report.results);
+    for (const PairSpec& pair : experiment_.pairs) {
+      report.pairs.push_back({pair.name, how_judged(pair)});
+    }
     add_speed_ups(experiment_, report.results);
     add_best(experiment_, report.results);
     return report;
