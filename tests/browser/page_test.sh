@@ -76,6 +76,10 @@ looked_at again --reference "$work/street/reference"
 looked_at page --reference "$work/street/reference"
 "$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/report.html"
 NODE_PATH=$modules node "$source/tests/browser/report_test.cjs" "$browser" "$work/report.html" $pictures
+"$seqloop" run --source "$work/street/<b>query" --reference "$work/street/reference" --paper --out "$work/run.jsonl" \
+  --summary "$work/run.json" 2>/dev/null
+"$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/uniqueness.html"
+NODE_PATH=$modules node "$source/tests/browser/report_test.cjs" "$browser" "$work/uniqueness.html"
 # A build without SQLite keeps no maps.
 if "$seqloop" run --source "$work/street/reference" --map "$work/m.seqloop" --session '<i>monday' --out /dev/null \
   2>"$work/said"; then

@@ -15,7 +15,11 @@ async function main([path, file, folder]) {
     assert.ok(values.length > 10 && !values.includes('–'), `what lines do not tell has no row: ${values}`);
     const {left, top} = await page.evaluate(() => view.dots[0]);
     await page.click('#places', {position: {x: left, y: top}});
-    assert.ok((await page.textContent('#places-picked')).startsWith('Frame '));
+    const picked = await page.textContent('#places-picked');
+    assert.ok(picked.startsWith('Frame '));
+    const said = picked.includes('probability');
+    assert.strictEqual(await page.isVisible('#probability'), said, 'an empty chart would say that nothing is sure');
+    assert.strictEqual((await page.textContent('#probability-text')).includes('by uniqueness'), !said);
     await noSidewaysScroll(page, `report, ${width} pixels`);
     await noSeriousFaults(page, `report, ${width} pixels`);
     if (folder) await page.screenshot({path: `${folder}/report_${colorScheme}_${width}.png`, fullPage: true});

@@ -117,7 +117,12 @@ function draw() {
   const decision = status.run.decision || {};
   view.dots = drawPlaces(byId('places'), view.answers, ownPlaces(), view.picked, view.marks, status.run.sessions || [],
     status.map.places);
-  drawProbability(byId('probability'), view.answers, decision.min_probability);
+  if (view.answers.length > 0 && view.answers.every((one) => one.probability === null)) {
+    show('probability-text', 'This run decides by uniqueness: no answer has a probability.');
+    byId('probability').hidden = true;
+  } else {
+    drawProbability(byId('probability'), view.answers, decision.min_probability);
+  }
   drawTimes(byId('times'), view.frames, (status.run.budget_ms || {}).total);
 }
 
