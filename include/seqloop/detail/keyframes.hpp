@@ -15,8 +15,9 @@ namespace seqloop {
 /// Which frames of a drive are keyframes: those that sequences are made of. A frame that shows
 /// hardly anything new beside what usually is new is none: the robot stands. Where frames follow
 /// each other so closely that the scene hardly changes from one to the next, only those are that
-/// look unlike the last one. So a faster camera, a slower robot and one that stands show the same
-/// sequence. Source: src/README.md, section 5.11.
+/// look unlike the last one. A drive that closes loops keeps to that once it was so: its places
+/// were taken so. So a faster camera, a slower robot and one that stands show the same sequence.
+/// Source: src/README.md, section 5.11.
 class Keyframes {
  public:
   /// A change is usually taken to be so many frames from the last one at most.
@@ -29,7 +30,9 @@ class Keyframes {
 
   /// Another drive begins, of which nothing is known.
   void begin() noexcept {
-    usually_apart_ = Usual(apart_at_first);
+    usually_apart_ = Usual(apart_at_first, changes_at_first);
+    changes_ = 0;
+    is_dense_ = false;
     since_change_ = 0;
     usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
@@ -40,7 +43,7 @@ class Keyframes {
   void go_by(double spacing) noexcept {
     constexpr double share = 0.5;
     change_ = change_where_dense_ = share * spacing;
-    dense_ = 1.9;
+    has_map_ = true;
   }
 
   /// Takes the next frame. @param variance of all features together
@@ -48,7 +51,7 @@ class Keyframes {
   /// Work: 2 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
     const double unrelated = 2.0 * variance;
-    const bool was_dense = is_dense();
+    const bool was_dense = is_dense_;
     const double from_change = squared_distance(last_change_, descriptor);
     const double differs = last_is_change_ ? from_change : squared_distance(last_, descriptor);
     const bool changed = take_change(from_change, unrelated);
@@ -74,24 +77,37 @@ class Keyframes {
 
   /// How many keyframes as many frames are, by what is usual.
   [[nodiscard]] std::uint64_t in(std::uint64_t frames) const noexcept {
-    if (!is_dense()) return frames;
+    if (!is_dense_) return frames;
     return static_cast<std::uint64_t>(static_cast<double>(frames) / usually_apart_.mean());
   }
 
   /// Whether it usually takes more than a frame for the scene to change.
-  [[nodiscard]] bool is_dense() const noexcept { return usually_apart_.mean() > dense_; }
+  [[nodiscard]] bool is_dense() const noexcept { return is_dense_; }
 
  private:
   /// Whether a frame looks unlike the last that did. @param differs squared distance of the two
   /// @param unrelated of two frames that have nothing to do with each other
   bool take_change(double differs, double unrelated) noexcept {
     const std::uint64_t frames = ++since_change_;
-    const double change = is_dense() ? change_where_dense_ : change_;
+    const double change = is_dense_ ? change_where_dense_ : change_;
     if (differs <= change * unrelated) return false;
     // A robot that stands says nothing of how fast it goes.
     usually_apart_.take(static_cast<double>(std::min(frames, most_apart)));
+    ++changes_;
     since_change_ = 0;
+    decide();
     return true;
+  }
+
+  /// A drive that becomes dense late has places that were sampled otherwise, so that is left to
+  /// those that clearly are.
+  void decide() noexcept {
+    const double apart = usually_apart_.mean();
+    if (has_map_) {
+      is_dense_ = apart > dense_with_map;
+    } else if (!is_dense_) {
+      is_dense_ = apart > (changes_ <= first_changes ? dense_at_first : dense_later);
+    }
   }
 
   /// A frame that is both is kept once, and so compared once with the next: mostly all are.
@@ -110,17 +126,26 @@ class Keyframes {
   // Less than this share of what is usually new is nothing.
   static constexpr double stands = 0.15;
   static constexpr double apart_at_first = 1.0;
+  static constexpr double changes_at_first = 5.0;  // as if seen
   static constexpr double new_at_first = 0.1;
   // So new is a cut, and so many keyframes later it is known whether the robot knows the place.
   static constexpr double cut = 0.5;
   static constexpr std::uint64_t settled_after = 8;
 
+  // Frames from one change to the next where a drive is dense.
+  static constexpr double dense_with_map = 1.9;
+  static constexpr double dense_at_first = 1.8;
+  static constexpr double dense_later = 2.2;
+  static constexpr std::uint64_t first_changes = 40;
+
   // New is by what two frames that have nothing in common differ by.
-  double dense_ = 2.0;                // frames from one change to the next
-  double change_ = 0.1;               // so new is a change
-  double change_where_dense_ = 0.15;  // likewise
-  std::uint64_t since_change_ = 0;
-  Usual usually_apart_{apart_at_first};      // frames from one change to the next
+  double change_ = 0.1;                // so new is a change
+  double change_where_dense_ = 0.125;  // likewise
+  bool has_map_ = false;               // is matched with
+  bool is_dense_ = false;
+  std::uint64_t changes_ = 0;
+  std::uint64_t since_change_ = 0;                         // frames
+  Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes
   bool last_is_change_ = true;               // then the last keyframe is kept as the last change

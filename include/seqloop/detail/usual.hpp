@@ -5,11 +5,12 @@
 
 namespace seqloop {
 
-/// What is usual in a drive: a mean that starts as if 20 values had been seen, and to which the
+/// What is usual in a drive: a mean that starts as if some values had been seen, and to which the
 /// newest adds 1/200 in the end.
 class Usual {
  public:
-  explicit Usual(double at_first) noexcept : mean_(at_first) {}
+  /// @param seen how many, at least 0
+  explicit Usual(double at_first, double seen = 20.0) noexcept : mean_(at_first), seen_(seen) {}
 
   void take(double value) noexcept {
     constexpr double memory = 200.0;
@@ -21,7 +22,7 @@ class Usual {
 
  private:
   double mean_;
-  double seen_ = 20.0;
+  double seen_;
 };
 
 }  // namespace seqloop
