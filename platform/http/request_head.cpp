@@ -137,7 +137,8 @@ CheckedHead check(std::string_view head, const Rules& rules) {
   const std::string_view target = line.substr(first + 1, last - first - 1);
   if (line.substr(last + 1) != "HTTP/1.1") return refused(505, "only HTTP/1.1 is spoken here");
   const bool changes = method == "POST";
-  if (!changes && method != "GET") return refused(405, "only GET and POST are known here");
+  if (!changes && method != "GET" && method != "HEAD")
+    return refused(405, "only GET, HEAD and POST are known here");
   if (target.size() > most_target) return refused(414, "the address is too long");
   const bool plain = std::ranges::all_of(target, [](char c) { return c > 0x20 && c < 0x7F; });
   if (!target.starts_with('/') || !plain || target.find('%') != std::string_view::npos)
@@ -162,7 +163,7 @@ CheckedHead check(std::string_view head, const Rules& rules) {
       return refused(400, "Content-Length is no length");
   }
   if (good.body > most_body) return refused(413, "the body is too long");
-  if (!changes && good.body > 0) return refused(400, "GET has no body");
+  if (!changes && good.body > 0) return refused(400, "GET and HEAD have no body");
   if (changes) {
     if (auto fault = refuse_change(headers, rules)) return *fault;
   }

@@ -27,8 +27,8 @@ struct CheckedHead {
 };
 
 /// Looks at everything that a client says before the library does: only what is known to be good is
-/// passed on. One Host that is ours; GET without a body, or POST of JSON with its length, our own
-/// Origin and the token.
+/// passed on. One Host that is ours; GET or HEAD without a body, or POST of JSON with its length,
+/// our own Origin and the token.
 /// @param head line and headers, with the empty line behind them
 /// Work: linear. Allocates: what is passed on. Errors: none thrown but for want of memory.
 [[nodiscard]] CheckedHead check(std::string_view head, const Rules& rules);

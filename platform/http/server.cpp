@@ -34,13 +34,15 @@ constexpr std::array<std::pair<const char*, const char*>, 6> manners{
      {"Cache-Control", "no-store"}}};
 
 /// @param why without quotes, as it stands in JSON
-std::string refusal(int status, std::string_view why) {
+/// @param head whether headers alone are asked for, as by HEAD
+std::string refusal(int status, std::string_view why, bool head = false) {
   const std::string body = "{\"error\":\"" + std::string(why) + "\"}";
   std::string text = "HTTP/1.1 " + std::to_string(status) + " Refused\r\n";
   for (const auto& [name, value] : manners) text += std::string(name) + ": " + value + "\r\n";
+  if (status == 405) text += "Allow: GET, HEAD, POST\r\n";
   text += "Content-Type: application/json\r\nConnection: close\r\nContent-Length: " +
           std::to_string(body.size()) + "\r\n\r\n";
-  return text + body;
+  return head ? text : text + body;
 }
 
 Rules rules_for(const Address& address, std::string token) {
@@ -76,7 +78,8 @@ class Server::Impl : private httplib::Server {
     set_exception_handler([](const httplib::Request&, httplib::Response& response,
                              const std::exception_ptr&) { response.status = 500; });
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      if (request.method != "GET") return HandlerResponse::Unhandled;
+      // Of HEAD the library sends the headers alone.
+      if (request.method == "POST") return HandlerResponse::Unhandled;
       get(request, response);
       return HandlerResponse::Handled;
     });
@@ -193,7 +196,7 @@ class Server::Impl : private httplib::Server {
     }
     if (checked.status != 0) {
       ++refused_;
-      connection.write_all(refusal(checked.status, checked.why));
+      connection.write_all(refusal(checked.status, checked.why, head.starts_with("HEAD ")));
       return false;
     }
     connection.pass_on(std::move(checked.passed_on), checked.body);

@@ -84,6 +84,7 @@ TEST(RequestHead, SizesAreBounded) {
   for (const char* none : {"-1", "+1", "1 1", "0x10", "", "1,1"})
     EXPECT_EQ(of_length(none), 400) << none;
   EXPECT_EQ(status(get("/", "Host: localhost\r\nContent-Length: 1\r\n")), 400);
+  EXPECT_EQ(status("HEAD / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\n\r\n"), 400);
 }
 
 TEST(RequestHead, WhatIsNoPlainHttpIsRefused) {

@@ -97,6 +97,32 @@ TEST_F(ServerTest, AnswersWithItsManners) {
   EXPECT_TRUE(ask("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").starts_with("HTTP/1.1 421"));
 }
 
+TEST_F(ServerTest, HeadIsAnsweredAsGetWithoutTheBody) {
+  const auto all = [&](const std::string& requests) {
+    Client client(port());
+    client.send(requests);
+    while (client.receive(8000)) {
+    }
+    return client.received();
+  };
+  const std::string host = " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const std::string closing = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  for (const char* target : {"/", "/api/events"}) {
+    const std::string both = all(std::string("HEAD ") + target + host + closing);
+    EXPECT_TRUE(both.starts_with("HTTP/1.1 200")) << both;
+    EXPECT_NE(both.find("\r\n\r\nHTTP/1.1 200"), std::string::npos) << both;
+    EXPECT_TRUE(both.ends_with("\r\n\r\npage")) << both;
+  }
+  EXPECT_NE(all("HEAD /" + host + closing).find("Content-Length: 4\r\n"), std::string::npos);
+  EXPECT_TRUE(all("HEAD /gone" + host + closing).starts_with("HTTP/1.1 404"));
+  const std::string refused = all("HEAD / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  EXPECT_TRUE(refused.starts_with("HTTP/1.1 421")) << refused;
+  EXPECT_TRUE(refused.ends_with("\r\n\r\n")) << refused;
+  const std::string unknown = ask("DELETE /" + host);
+  EXPECT_TRUE(unknown.starts_with("HTTP/1.1 405")) << unknown;
+  EXPECT_NE(unknown.find("\r\nAllow: GET, HEAD, POST\r\n"), std::string::npos) << unknown;
+}
+
 TEST_F(ServerTest, OneConnectionAsksAgainAndAgain) {
   Client client(port());
   // Two at once: the second must not be lost.
