@@ -104,6 +104,8 @@ async function main([path, file, token, mode, folder]) {
   const browser = await start(path);
   const page = await open(browser, {viewport: {width: 1280, height: 800}, colorScheme: 'light'});
   const url = await addressIn(file);
+  // Refused once, as where too many look, the page asks again.
+  await page.route('**/api/events', (route) => route.fulfill({status: 503}), {times: 1});
   await page.goto(`${url}/#token=${token}`);
   assert.strictEqual(await page.evaluate(() => location.hash), '', 'the token is in no address any more');
   if (mode === 'twins') {
@@ -118,6 +120,9 @@ async function main([path, file, token, mode, folder]) {
   // Names are text, whatever they hold.
   await page.waitForFunction(() => document.getElementById('source').textContent.includes('<b>query'));
   await page.waitForFunction(() => view.dots.length > 20, null, {timeout: 120000});
+  await page.route('**/api/control', (route) => route.abort(), {times: 1});
+  await page.click('#pause');
+  await page.waitForFunction(() => byId('said').textContent === 'Not done: the robot is out of reach.');
   await page.click('#pause');
   await page.waitForFunction(() => view.status.state === 'paused' && view.status.shown.loops === view.status.loops.listed,
     null, {timeout: 60000});
@@ -155,6 +160,8 @@ async function main([path, file, token, mode, folder]) {
   const which = await loop.getAttribute('data-loop');
   await loop.getByRole('button', {name: /^reject/}).click();
   await page.waitForSelector(`#loops li.rejected[data-loop="${which}"]`);
+  // Loops that did not come are asked for again, while none is added.
+  await page.route('**/api/loops*', (route) => route.abort(), {times: 1});
   await page.reload();
   await page.waitForSelector(`#loops li.rejected[data-loop="${which}"]`);
 

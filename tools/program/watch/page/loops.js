@@ -10,7 +10,11 @@ const ask = (path) => fetch(path).then((reply) => reply.ok ? reply.json() : Prom
 let token = '';
 async function change(path, wish) {
   const reply = await fetch(path, {method: 'POST', body: JSON.stringify(wish),
-    headers: {'Content-Type': 'application/json', 'Authorization': 'Bearer ' + token}});
+    headers: {'Content-Type': 'application/json', 'Authorization': 'Bearer ' + token}}).catch(() => null);
+  if (!reply) {
+    show('said', 'Not done: the robot is out of reach.');
+    return false;
+  }
   const said = reply.headers.get('Content-Type') === 'application/json' ? await reply.json() : {error: await reply.text()};
   show('said', said.error ? 'Not done: ' + said.error : 'Done.');
   return reply.ok;
@@ -117,8 +121,12 @@ async function showLoops(count) {
   if (list.shown === `${first}-${end}`) return;
   list.shown = `${first}-${end}`;
   const {loops} = report ? {loops: report.loops.slice(first, end)}
-                         : await ask(`/api/loops?first=${first}&count=${end - first}`);
+                         : await ask(`/api/loops?first=${first}&count=${end - first}`).catch(() => ({}));
   if (list.shown !== `${first}-${end}`) return;
+  if (!loops) {
+    list.shown = '';  // so that they are asked for again
+    return;
+  }
   const known = new Map([...byId('loops').children].map((item) => [item.dataset.loop, item]));
   byId('loops').replaceChildren(...loops.reverse().map((loop) => known.get(String(loop.number)) || loopItem(loop)));
 }

@@ -179,7 +179,8 @@ function control() {
   };
   byId('mark').onsubmit = async (event) => {
     event.preventDefault();
-    if (await change('/api/control', {do: 'mark', name: new FormData(event.target).get('name')})) event.target.reset();
+    if (!await change('/api/control', {do: 'mark', name: new FormData(event.target).get('name')})) return;
+    event.target.reset();
     view.marks = await ask('/api/marks');
   };
 }
@@ -205,6 +206,8 @@ function listen() {
   events.onerror = () => {
     byId('health').className = 'bad';
     show('health', 'not connected: the run has ended, or the robot is out of reach');
+    // Refused, as where too many look, the browser does not ask again by itself.
+    if (events.readyState === EventSource.CLOSED) setTimeout(listen, 2000);
   };
 }
 
