@@ -61,7 +61,8 @@ std::optional<ProcessedFrame> Pipeline::process() noexcept {
   processed.descriptor = seen.descriptor;
   processed.fault = seen.fault;
   if (processed.report.gate == Gate::frame_error && processed.fault.empty()) {
-    processed.fault = seen.descriptor.size() != detector_->descriptor_size()
+    processed.fault = seen.blank ? "its picture is blank, without any feature"
+                      : seen.descriptor.size() != detector_->descriptor_size()
                           ? "its descriptor is of another size than the map's"
                           : "its descriptor is blank, not finite, or not of unit length";
   }

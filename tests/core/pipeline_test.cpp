@@ -53,7 +53,8 @@ class FakeDescriber : public Describer {
   Description describe(const Image& image, std::span<float> descriptor) noexcept override {
     if (*image.data == 7) return Description::failed;
     std::ranges::copy(drive_[*image.data], descriptor.begin());
-    return Description::good;
+    const bool zero = std::ranges::all_of(descriptor, [](float value) { return value == 0.0F; });
+    return zero ? Description::blank : Description::good;
   }
   std::string_view last_fault() const noexcept override { return "blurred"; }
 
@@ -200,6 +201,24 @@ TEST(Pipeline, SaysWhichSizesDifferBeforeTheFirstFrame) {
             "map for the describer's size, or take what described the map");
   EXPECT_TRUE(test::says(message(16), "those of the detector's map 16;"));
   EXPECT_TRUE(test::says(message(16), "descriptor_size: 16, where the describer writes 24 values"));
+}
+
+// A covered lens is no fault of the descriptor.
+TEST(Pipeline, SaysThatAPictureIsBlank) {
+  oracle::Vectors drive = oracle::drive(3, 30, 16);
+  MatcherConfig config = paper(Candidates::all, 6);
+  config.blank_is_unreadable = true;
+  PlaceMap map = map_of(drive, config);
+  Detector detector(config, map);
+  std::ranges::fill(drive[0], 0.0F);
+  FakeSource source(1);
+  FakeDescriber describer(drive);
+  FakeClock clock;
+  Pipeline pipeline(source, &describer, detector, clock, 16);
+  const auto processed = pipeline.process();
+  ASSERT_TRUE(processed);
+  EXPECT_EQ(processed->report.gate, Gate::frame_error);
+  EXPECT_EQ(processed->fault, "its picture is blank, without any feature");
 }
 
 }  // namespace
