@@ -29,8 +29,9 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
       detector_faults(config, {map.capacity(), map.descriptor_size(), map.order().most_sessions()});
   // Where there is room for several sessions, they may be taken in later.
   if (config.use == Use::localise && map.size() == 0 && map.order().most_sessions() == 1) {
-    faults.push_back(
-        {"map", "it has no places", "add the reference drive before localising in it"});
+    faults.push_back({"map", "it has no places",
+                      "add the reference drive before localising in it, or let it close loops "
+                      "(close_loops)"});
   }
   if (config.use == Use::close_loops && !map.has_room_for_session()) {
     faults.push_back(
