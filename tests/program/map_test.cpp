@@ -77,7 +77,19 @@ TEST_F(MapVerb, InfoSaysWhatIsInAMap) {
   EXPECT_EQ(json["sessions"][1]["name"], "tuesday");
   EXPECT_EQ(json["sessions"][1]["places"], 40);
   EXPECT_EQ(json["sessions"][1]["frames"], 44);
+  EXPECT_EQ(json["file_bytes"], fs::file_size(file("a")));
   EXPECT_EQ(listing(), "a ");
+}
+
+// As a program that was killed leaves it, and one that is still at it.
+TEST_F(MapVerb, InfoCountsTheLogThatTheMapStandsIn) {
+  MapFile map = MapFile::open(file("a"), test::sample_form());
+  const std::int64_t id = map.begin_session("monday", 1'700'000'000'000'000'000, "k = 10");
+  test::save_sample(map, id, 0, 100);
+  const auto json = nlohmann::json::parse(expect(0, "info a --json", "{").out);
+  EXPECT_EQ(json["file_bytes"], fs::file_size(file("a")) + fs::file_size(file("a-wal")));
+  EXPECT_GT(json["file_bytes"], 100 * 200);
+  expect(0, "info a", " bytes with its log, ");
 }
 
 TEST_F(MapVerb, CheckNamesWhatIsDamagedAndRecoverLeavesItOut) {

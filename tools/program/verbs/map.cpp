@@ -42,12 +42,20 @@ std::string content_of(const MapFile& map) {
                      sessions.size() == 1 ? "" : "s");
 }
 
+/// Of the log beside it, in which what was saved may stand until the map is closed.
+std::uintmax_t log_bytes(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file.string() + "-wal", error);
+  return error ? 0 : bytes;
+}
+
 void info(const MapSettings& settings) {
   const fs::path file = settings.words[1];
   const MapFile map = MapFile::read_only(file);
   const std::vector<sqlite::SessionFacts> sessions = map.sessions();
   const sqlite::MapForm& form = map.form();
-  const std::uintmax_t bytes = fs::file_size(file);
+  const std::uintmax_t log = log_bytes(file);
+  const std::uintmax_t bytes = fs::file_size(file) + log;
   const sqlite::ThumbnailFacts thumbnails = map.thumbnail_facts();
   std::map<std::int64_t, std::uint64_t> visits;  // by session
   map.read_links([&visits](const sqlite::SavedLink& link) {
@@ -78,10 +86,10 @@ void info(const MapSettings& settings) {
   }
   std::string text = fmt::format(
       "{} places of {} bytes, descriptors of {} values\nform: {}\ndescribed by: {}\nfile: {} "
-      "bytes, {} thumbnails take {} of them\n\n"
+      "bytes{}, {} thumbnails take {} of them\n\n"
       "      places      frames      visits  session\n",
       places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer, bytes,
-      thumbnails.count, thumbnails.bytes);
+      log > 0 ? " with its log" : "", thumbnails.count, thumbnails.bytes);
   for (const sqlite::SessionFacts& facts : sessions) {
     text += fmt::format("{:>12}{:>12}{:>12}  {}\n", facts.places, facts.frames, visits[facts.id],
                         printable(facts.name));
@@ -131,7 +139,7 @@ void change(const MapSettings& settings) {
   std::string left;
   {
     MapFile map = MapFile::open(file, std::nullopt);
-    before = fs::file_size(file);
+    before = fs::file_size(file) + log_bytes(file);
     if (settings.words[0] == "forget") map.forget(settings.words[2]);
     if (settings.words[0] == "compact") map.compact();
     left = content_of(map);
