@@ -27,6 +27,9 @@ std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path, Sour
       throw SetupError(Fault{name, "is a device, not a recording",
                              "record the drive first and name the video file or image folder"});
     case std::filesystem::file_type::not_found:
+      if (name.find("://") != std::string::npos)
+        throw SetupError(Fault{name, "is an address of a network, and no file",
+                               "feed it into a virtual camera, or record it to a video file"});
       throw SetupError(Fault{name, "does not exist", "check the name"});
     case std::filesystem::file_type::none:
     case std::filesystem::file_type::unknown:

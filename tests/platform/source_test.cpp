@@ -40,6 +40,8 @@ TEST(OpenSource, NamesWhatItCannotOpen) {
   const auto pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_TRUE(says(open_error(folder.path() / "none"), "does not exist"));
+  for (const char* address : {"rtsp://10.0.0.5/stream", "http://10.0.0.5:8080/video.mjpg"})
+    EXPECT_TRUE(says(open_error(address), "is an address of a network, and no file; feed it"));
   EXPECT_TRUE(says(open_error("/dev/null"), "is a device, not a recording"));
   EXPECT_TRUE(says(open_error(pipe), "is neither a folder nor a file"));
   EXPECT_TRUE(says(open_error(folder.write("1.JPG", encoded(textured(8, 8), ".jpg"))),

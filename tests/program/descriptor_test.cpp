@@ -122,6 +122,8 @@ TEST_F(Descriptor, NothingIsLearnedWhereTheRestIsWrong) {
   const test::Outcome outcome = run("describe --out d.npy");
   EXPECT_NE(outcome.err.find("source: not given"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find(".npy file"), std::string::npos) << "it refuses these";
+  const std::string run_says = run("run --out lines.jsonl").err;
+  EXPECT_NE(run_says.find("source: not given; give a camera, "), std::string::npos) << run_says;
 }
 
 TEST_F(Descriptor, BadInput) {

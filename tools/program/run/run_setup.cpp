@@ -114,6 +114,12 @@ void open_recordings(RunSetup& setup, const RunSettings& settings, const DriveSe
     });
   }
   if (is_live(settings.source)) return;
+  if (settings.source.empty()) {
+    faults.push_back({"source", "not given",
+                      "give a camera, a topic of ROS 2, an image folder, a video, a bag or an .npy "
+                      "file"});
+    return;
+  }
   collect(faults,
           [&] { setup.recording = open_drive(settings.source, "source", drive, describer); });
 }
