@@ -158,6 +158,12 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
     other[key] = "none";
     EXPECT_EQ(answered("/api/verdict", other), "400") << key;
   }
+  // What is no verdict takes none back.
+  for (const char* word : {"", "rejectd", "Accepted"}) {
+    EXPECT_EQ(answered("/api/verdict", {{"loop", 0}, {"verdict", word}}), "400") << word;
+  }
+  EXPECT_EQ(answered("/api/verdict", {{"loop", 0}}), "400");
+  EXPECT_EQ(json(get("/api/loops?first=0&count=1"))["loops"][0]["verdict"], "accepted");
   EXPECT_NE(get("/api/truth.csv").find("query,reference\n"), std::string::npos);
   EXPECT_EQ(answered("/api/control", {{"do", "stop"}}), "200");
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));

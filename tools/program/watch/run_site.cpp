@@ -315,7 +315,9 @@ http::Reply RunSite::control(const Json& wish) {
 }
 
 http::Reply RunSite::judge(const Json& wish) {
-  const std::string word = wish.value("verdict", "none");
+  const std::string word = wish.value("verdict", "");
+  if (word != "accepted" && word != "rejected" && word != "none")
+    return fault(400, "verdict is accepted, rejected or none");
   const Verdict verdict = word == "accepted"   ? Verdict::accepted
                           : word == "rejected" ? Verdict::rejected
                                                : Verdict::none;
