@@ -19,6 +19,10 @@ read -ra packages < <(dpkg-deb --field "$package" Depends | sed 's/([^)]*)//g; s
 root=$PWD/build/sysroot/board-$arch
 tools/sysroot "$arch" "$root" "${packages[@]}"
 dpkg-deb --extract "$package" "$work/unpacked"
+# What the page of packages tells to copy.
+for example in seqloop.service 70-seqloop-camera.rules; do
+  cmp "tools/packaging/$example" "$work/unpacked/usr/share/doc/seqloop/examples/$example"
+done
 seqloop() { (cd "$work" && "$emulator" -L "$root" "$work/unpacked/usr/bin/seqloop" "$@"); }
 
 seqloop --version
