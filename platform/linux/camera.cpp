@@ -36,7 +36,7 @@ Camera::Camera(CameraOptions options, SystemCalls& system, Clock& clock)
     : options_(std::move(options)), system_(system), clock_(clock) {
   retired_.reserve(most_out);
   open_first();
-  twins_ = count_twins(system_, facts_.identity);
+  twins_ = count_twins(system_, options_.path, facts_.identity);
   silences_to_act_ = silences_before_restart;
   last_frame_ = clock_.now();
 }

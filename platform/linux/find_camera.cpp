@@ -24,13 +24,21 @@ bool is_link(SystemCalls& system, const std::string& path) {
   return !real.empty() && real != path;
 }
 
+/// Nodes by the usual names, and the user's own where that is another, as a container may give it.
+std::vector<std::string> nodes(SystemCalls& system, const std::string& path) {
+  std::vector<std::string> paths = video_paths(system);
+  const std::string real = system.resolve(path);
+  if (!real.empty() && std::ranges::find(paths, real) == paths.end()) paths.push_back(real);
+  return paths;
+}
+
 }  // namespace
 
 std::string find_camera(SystemCalls& system, const std::string& path,
                         const CameraIdentity& identity, const Twins& twins) {
   if (is_link(system, path)) return path;
   std::array<std::vector<std::string>, same + 1> like;
-  for (const std::string& candidate : video_paths(system)) {
+  for (const std::string& candidate : nodes(system, path)) {
     const auto node = open_node(system, candidate);
     if (const auto* const camera = std::get_if<VideoNode>(&node)) {
       like[likeness(camera->identity, identity)].push_back(candidate);
@@ -47,10 +55,10 @@ std::string find_camera(SystemCalls& system, const std::string& path,
   return {};
 }
 
-Twins count_twins(SystemCalls& system, const CameraIdentity& identity) {
+Twins count_twins(SystemCalls& system, const std::string& path, const CameraIdentity& identity) {
   Twins twins{0, 0};
-  for (const std::string& path : video_paths(system)) {
-    const auto node = open_node(system, path);
+  for (const std::string& candidate : nodes(system, path)) {
+    const auto node = open_node(system, candidate);
     const auto* const camera = std::get_if<VideoNode>(&node);
     if (camera == nullptr) continue;
     const CameraIdentity& other = camera->identity;

@@ -214,6 +214,31 @@ TEST_F(CameraRuns, IsLostAndComesBackUnderAnotherName) {
   EXPECT_EQ(camera_->facts().path, "/dev/video3");
 }
 
+// As a container may be given it.
+TEST_F(CameraRuns, IsFoundAgainUnderANameOfItsOwn) {
+  kernel_.replug("/dev/camera", kernel_.pull("/dev/video0"));
+  options_.path = "/dev/camera";
+  (void)open();
+  (void)frame();
+  auto unplugged = kernel_.pull("/dev/camera");
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(next().what, Capture::lost);
+  kernel_.replug("/dev/camera", unplugged);
+  (void)frame();
+  EXPECT_EQ(camera_->facts().path, "/dev/camera");
+}
+
+TEST_F(CameraRuns, UnderANameOfItsOwnIsNotTakenForItsTwin) {
+  camera().serial.clear();
+  kernel_.replug("/dev/camera", kernel_.pull("/dev/video0"));
+  FakeCamera twin = kernel_.at("/dev/camera");
+  twin.bus = "usb-2";
+  kernel_.plug("/dev/video1", twin);
+  options_.path = "/dev/camera";
+  (void)open();
+  (void)kernel_.pull("/dev/camera");
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(next().what, Capture::lost);
+}
+
 TEST_F(CameraRuns, IsNotTakenForItsTwin) {
   FakeCamera twin;
   twin.serial = "2";

@@ -16,7 +16,9 @@ struct Twins {
 };
 
 /// How many cameras look like this one.
-[[nodiscard]] Twins count_twins(SystemCalls& system, const CameraIdentity& identity);
+/// @param path as the user gave it
+[[nodiscard]] Twins count_twins(SystemCalls& system, const std::string& path,
+                                const CameraIdentity& identity);
 
 /// Looks for a camera that was there before: in this order
 ///  1. whatever a link (/dev/v4l/by-id/...) of the user's leads to, because the user named it;
@@ -24,7 +26,8 @@ struct Twins {
 ///  3. the same serial number elsewhere, or the same place where either has no number; if only one
 ///     camera fits, and no other had that number (cheap cameras all have one);
 ///  4. the same driver and card elsewhere; if only one camera fits, and there was no other of them.
-/// A serial number that differs is another camera. Allocates: yes.
+/// A serial number that differs is another camera. Looked at are `/dev/videoN` and `path` itself,
+/// whatever it is called. Allocates: yes.
 /// @param path  as the user gave it
 /// @param twins as they were when it was opened first
 /// @return a path to open; empty when the camera is not there
