@@ -304,6 +304,25 @@ TEST(RunView, TellsTroublesOnceAndTheNewestOfThem) {
   EXPECT_EQ(torn.status()["map"]["saved"], 0);
 }
 
+TEST(RunView, ASilenceIsOneTroubleOfNoFrame) {
+  RunView view(Json::object());
+  const auto snapshot = std::make_unique<Snapshot>();
+  const auto take = [&](Gate gate, std::uint64_t newest, const std::string& fault) {
+    snapshot->frame.report.gate = gate;
+    snapshot->frame.report.newest = newest;
+    snapshot->fault.assign({fault});
+    view.take(*snapshot, 0.0);
+  };
+  take(Gate::frame_error, 7, "torn");
+  for (int n = 0; n < 30; ++n) take(Gate::no_frame, 0, fmt::format("away for {} s", n));
+  EXPECT_EQ(view.status()["troubles"], Json::parse(R"([{"frame": 7, "times": 1, "text": "torn"},
+    {"frame": null, "times": 30, "text": "away for 29 s"}])"));
+  take(Gate::frame_error, 8, "torn");
+  take(Gate::frame_error, 9, "torn");
+  EXPECT_EQ(view.status()["troubles"].back(),
+            Json::parse(R"({"frame": 9, "times": 2, "text": "torn"})"));
+}
+
 TEST(RunView, IsIllWithoutFramesAndOverItsBudget) {
   RunView view(Json::object());
   const auto snapshot = std::make_unique<Snapshot>();

@@ -62,12 +62,19 @@ void RunView::note_trouble(const Snapshot& snapshot) {
   const std::string_view text =
       snapshot.fault.view().empty() ? snapshot.remark.view() : snapshot.fault.view();
   if (text.empty()) return;
-  if (troubles_.empty() || troubles_.back().text != text) {
-    troubles_.push_back({0, 0, std::string(text)});
+  const FrameReport& report = snapshot.frame.report;
+  const bool silent = report.gate == Gate::no_frame;
+  // The words of a silence count its seconds: it is one trouble all the same.
+  const bool goes_on = !troubles_.empty() && troubles_.back().frame.has_value() != silent &&
+                       (silent || troubles_.back().text == text);
+  if (!goes_on) {
+    troubles_.emplace_back();
     if (troubles_.size() > most_troubles) troubles_.pop_front();
   }
-  troubles_.back().frame = snapshot.frame.report.newest;
-  ++troubles_.back().times;
+  Trouble& trouble = troubles_.back();
+  trouble.text = text;
+  if (!silent) trouble.frame = report.newest;
+  ++trouble.times;
 }
 
 void RunView::take(const Answer& answer) {
@@ -156,8 +163,9 @@ Json RunView::status() const {
   if (run_.contains("sessions")) json["map"]["saved"] = newest_.map.saved;
   json["troubles"] = Json::array();
   for (const Trouble& trouble : troubles_) {
-    json["troubles"].push_back(
-        {{"frame", trouble.frame}, {"times", trouble.times}, {"text", trouble.text}});
+    json["troubles"].push_back({{"frame", trouble.frame ? Json(*trouble.frame) : Json(nullptr)},
+                                {"times", trouble.times},
+                                {"text", trouble.text}});
   }
   json["loops"] = {{"count", loops_seen_},
                    {"listed", loop_list_.size()},

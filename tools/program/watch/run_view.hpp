@@ -36,7 +36,7 @@ struct Mark {
 
 /// What was wrong with frames one after the other.
 struct Trouble {
-  std::uint64_t frame = 0;  ///< the newest of them
+  std::optional<std::uint64_t> frame;  ///< the newest of them; none where no frame came
   std::uint64_t times = 0;
   std::string text;
 };

@@ -43,7 +43,7 @@ function showStages(status) {
 /// What was wrong with frames, the newest first.
 function showTroubles(troubles) {
   const texts = troubles.map(({frame, times, text}) =>
-    `frame ${number(frame)}: ${text}` + (times > 1 ? ` (${number(times)} times)` : '')).reverse();
+    (frame === null ? text : `frame ${number(frame)}: ${text}`) + (times > 1 ? ` (${number(times)} times)` : '')).reverse();
   byId('troubles').hidden = texts.length === 0;
   if (byId('troubles').dataset.shown === texts.join('\n')) return;
   byId('troubles').dataset.shown = texts.join('\n');
