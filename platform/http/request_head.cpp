@@ -153,7 +153,8 @@ CheckedHead check(std::string_view head, const Rules& rules) {
     rest.remove_prefix(end + 2);
   }
   if (!headers.host) return refused(400, "there is no Host");
-  if (!is_ours(*headers.host, rules)) return refused(421, "this server does not go by that name");
+  if (!is_ours(*headers.host, rules))
+    return refused(421, "this server does not go by that name; ask by its IP address");
   CheckedHead good;
   if (headers.length) {
     const char* const end = headers.length->data() + headers.length->size();

@@ -47,6 +47,9 @@ TEST(RequestHead, ForeignNamesAreMisdirected) {
   EXPECT_EQ(status(get("/", "Host: 10.0.0.1:8321\r\n"), open), 0);
   EXPECT_EQ(status(get("/", "Host: robot:8321\r\n"), open), 0);
   EXPECT_EQ(status(get("/", "Host: evil.example\r\n"), open), 421);
+  // As a router may call it.
+  EXPECT_EQ(check(get("/", "Host: robot.fritz.box\r\n"), open).why,
+            "this server does not go by that name; ask by its IP address");
 }
 
 TEST(RequestHead, ChangesNeedTheTokenAndComeFromOurOwnPage) {
