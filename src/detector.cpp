@@ -432,9 +432,11 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
     keyframes_.skip(1);
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
+    ++unread_;
     queries_.push_again();
     return {false, true};
   }
+  unread_ = 0;
   if (!config_.standardisation.on) {
     steps_.take(true, FrameSteps::Shows::something_new);
     queries_.push(descriptor);
@@ -476,6 +478,11 @@ bool Detector::become_place() noexcept {
   if (queries_.newest() > 0) {
     const std::uint64_t apart = frame - steps_.frame_of(queries_.newest() - 1);
     map_->count_from(map_->order().next_number() + apart - 1);
+  }
+  // A lens that stays covered does not fill the map, nor does a robot that stands.
+  if (!told_.empty() && unread_ > config_.sequence_length) {
+    map_->count_from(map_->order().next_number() + 1);
+    return true;
   }
   const PlaceMap::Taken taken =
       map_->take(queries_.rows(), queries_.row_of(queries_.newest()), frame, keep);

@@ -170,6 +170,37 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FullMaps,
                                          Kind{Arithmetic::sketch, Candidates::all},
                                          Kind{Arithmetic::sketch, Candidates::adaptive}));
 
+// A covered lens, or a dark room, for longer than the map has places.
+TEST(FullMap, FramesThatCannotBeReadDoNotFillIt) {
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  config.exclude = 30;
+  config.full_map = FullMap::forget_oldest;
+  constexpr std::uint64_t covered = 1000;
+  PlaceMap map(config, {400, 64});
+  Detector detector(config, map);
+  const oracle::Vectors drive = laps(2, 150);
+  std::size_t right = 0;
+  const auto count = [&](std::span<const Answer> answers) {
+    for (const Answer& answer : answers) {
+      if (answer.gate != Gate::match) continue;
+      EXPECT_NEAR(static_cast<double>(answer.frame - answer.match->frame()), 150.0 + covered, 3.0);
+      ++right;
+    }
+  };
+  for (std::size_t i = 0; i < 150; ++i) count(detector.step(drive[i]).answers);
+  const std::size_t places = map.size();
+  for (std::uint64_t i = 0; i < covered; ++i) {
+    const FrameReport report = detector.step({});
+    EXPECT_FALSE(report.map_full);
+    count(report.answers);
+  }
+  EXPECT_LE(map.size(), places + config.sequence_length);
+  for (std::size_t i = 150; i < 300; ++i) count(detector.step(drive[i]).answers);
+  count(detector.finish());
+  EXPECT_GE(right, 130U);
+}
+
 TEST(FullMap, LoopsOntoTheWindowItselfAreScoredAsDefinedWhenPlacesGo) {
   for (const FullMap full_map : {FullMap::forget_oldest, FullMap::thin}) {
     for (const std::size_t exclude : {1U, 5U, 9U, 10U}) {
