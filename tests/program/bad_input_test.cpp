@@ -547,6 +547,58 @@ TEST_F(BadInput, AReferenceOfMorePlacesThanAreLookedThrough) {
   EXPECT_EQ(shorter.err.find(told), std::string::npos);
 }
 
+TEST_F(BadInput, FlagsThatDoNothing) {
+  folder_.write("video.avi", "");
+  folder_.write("drive.mcap", "");
+  std::filesystem::create_directory(file("pictures"));
+  const std::string described = ": the drives are described already";
+  expect_refused(
+      "run --source good.npy --reference good.npy --model a.onnx --layer x --scale 2 "
+      "--descriptor patches --training a --words 4 --remove-components 3",
+      {"model" + described, "layer" + described, "scale" + described, "descriptor" + described,
+       "training" + described, "words" + described, "remove-components" + described});
+  for (const std::string source :
+       {"run --source good.npy", "run --source /dev/null", "run --source ros:/camera",
+        "describe --source pictures", "stills --source video.avi --out stills"}) {
+    expect_refused(source + " --topic /camera", {"topic: it goes with a bag, and none is given"});
+  }
+  const std::string rate = "fps: it goes with image folders, descriptors and cameras";
+  for (const std::string verb : {"run", "describe", "stills"}) {
+    expect_refused(verb + " --source video.avi --fps 5", {rate});
+    expect_refused(verb + " --source drive.mcap --fps 5", {rate});
+  }
+  expect_refused("describe --source pictures --format GREY --size 8x8",
+                 {"format: it goes with a camera", "size: it goes with a camera"});
+  expect_refused("camera --format GREY --size 8x8 --fps 5",
+                 {"format: nothing is captured", "size: nothing", "fps: nothing"});
+  expect_refused(
+      "run --source good.npy --grow all --save-every-s 2 --thumbnails off "
+      "--fleet-places 7",
+      {"grow: there is no map", "save-every-s: there is no map", "thumbnails: there is no map",
+       "fleet-places: there are no others"});
+  expect_refused("run --source good.npy --overload-every 3",
+                 {"overload-every: the newest frame is taken, not every n-th"});
+  for (const std::string verb : {"run --reference good.npy --source good.npy ",
+                                 "match --reference good.npy --query good.npy ", "plan "}) {
+    expect_refused(verb + "--full-map thin --slice 5000 --relocalise-s 3",
+                   {"full-map: a map that is only localised in", "relocalise-s: --slice says"});
+    expect_refused(verb +
+                       "--paper --slice 5000 --relocalise-s 3 --distances 300 "
+                       "--standardise-prior 9 --standardise-horizon 9",
+                   {"slice: no part", "distances: it goes", "standardise-prior: features",
+                    "standardise-horizon: features"});
+  }
+  expect_refused("bench --only step --model a.onnx --topic /camera",
+                 {"model: describing is not timed", "topic: it goes with a bag"});
+  // A default that is written out is what happens anyway, and the contract's flags go with any
+  // method.
+  const test::Outcome outcome =
+      run("run --source good.npy --reference good.npy --full-map refuse --fps 10 --fleet-places "
+          "20000 --grow novel --method seqcnnslam --k 9 --num 15 --reinit 400 --initial-k 20 "
+          "--exclude 30 --rwindow 8");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 TEST_F(BadInput, Cameras) {
   folder_.write("file.txt", "no camera");
   expect_refused("camera --device /no/camera", {"/no/camera", "there is no camera"});

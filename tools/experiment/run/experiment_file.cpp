@@ -148,7 +148,9 @@ class Reader {
     OptionTable known;
     add_drive_options(known, none);
     if (section.has("fps")) section.refuse("'fps' belongs to a [[drive]]");
-    const auto written = section.written(known, {"name", "training", "fps"});
+    if (section.has("topic"))
+      section.refuse("'topic' chooses nothing in an experiment", "give bags with one topic only");
+    const auto written = section.written(known, {"name", "training", "fps", "topic"});
     for (const std::vector<Setting>& chosen : section.combinations(written)) {
       DescriptorSpec descriptor{name, section.where(), {}, training, chosen, {}};
       OptionTable options;

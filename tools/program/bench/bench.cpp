@@ -94,6 +94,10 @@ void bench(const BenchSettings& settings, const Peers& peers, Faults faults) {
     faults.push_back({"only", "'" + settings.only + "' is not timed", all_whats()});
   }
   if (!(settings.relocalise_s > 0.0)) faults.push_back({"relocalise-s", "it must be above 0"});
+  if (!settings.only.empty() && settings.only != "describe") {
+    refuse_describing(settings.drive, "describing is not timed", faults);
+  }
+  check_reading(settings.drive, settings.drive.training, faults);
   if (settings.rounds == 0) faults.push_back({"rounds", "0 is not above 0"});
   if (settings.only != "describe" && settings.only != "memory") {
     MatcherConfig config;

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "program/drives/camera_decoder.hpp"
 #include "program/drives/file_decoder.hpp"
+#include "program/drives/ros_name.hpp"
 #include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
 #include "program/process/say.hpp"
@@ -114,6 +116,29 @@ void add_drive_options(OptionTable& options, DriveSettings& settings) {
   options.text("topic", settings.topic, "of a bag: which pictures [the only topic that has any]");
 }
 
+void check_reading(const DriveSettings& settings, std::span<const std::filesystem::path> drives,
+                   Faults& faults) {
+  const auto may_be_bag = [](const std::filesystem::path& drive) {
+    std::error_code error;
+    const bool there = is_topic(drive) || std::filesystem::exists(drive, error);
+    return !drive.empty() && (!there || bags::is_bag(drive));
+  };
+  const auto has_no_rate = [](const std::filesystem::path& drive) {
+    std::error_code error;
+    const bool video = std::filesystem::is_regular_file(drive, error) && !is_described(drive);
+    return !drive.empty() && !video && !bags::is_bag(drive);
+  };
+  if (!settings.topic.empty() && std::ranges::none_of(drives, may_be_bag)) {
+    faults.push_back({"topic", "it goes with a bag, and none is given", "leave it out"});
+  }
+  // A default that is written out is what happens anyway.
+  if (settings.fps != DriveSettings{}.fps && std::ranges::none_of(drives, has_no_rate)) {
+    faults.push_back({"fps",
+                      "it goes with image folders, descriptors and cameras, and none is given",
+                      "leave it out"});
+  }
+}
+
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
   refuse_map(path);
   files::Matrix descriptors = files::read_npy(path);
@@ -140,7 +165,6 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
   refuse_map(path);
-  if (!settings.topic.empty()) say("{}: it is no bag: --topic does not choose here", path.string());
   const PictureNeeds needs = describer == nullptr ? PictureNeeds{} : describer->needs();
   return opencv::open_source(path, {.frames_per_second = settings.fps,
                                     .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false),

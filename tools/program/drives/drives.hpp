@@ -74,6 +74,14 @@ void check_describer(const DriveSettings& settings, bool training_given);
 [[nodiscard]] files::Matrix read_descriptors(const std::filesystem::path& path,
                                              Difference difference);
 
+/// Adds a fault for what says how drives are read, where none of them is read so.
+/// @param drives all that are given; those without a name and those that are not there are left out
+void check_reading(const DriveSettings& settings, std::span<const std::filesystem::path> drives,
+                   Faults& faults);
+
+/// Adds a fault for each setting that says how pictures are described. @param why none are
+void refuse_describing(const DriveSettings& settings, const std::string& why, Faults& faults);
+
 /// Whether a drive was described before, so that no describer is needed.
 [[nodiscard]] bool is_described(const std::filesystem::path& path);
 

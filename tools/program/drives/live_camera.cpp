@@ -19,6 +19,16 @@ bool is_camera(const std::filesystem::path& path) {
   return name.starts_with("/dev/video") || name.starts_with("/dev/v4l/");
 }
 
+void check_camera(const CameraSettings& settings, const std::filesystem::path& source,
+                  Faults& faults) {
+  if (is_camera(source)) return;
+  for (const auto& [flag, given] :
+       {std::pair{"format", settings.format.has_value()}, {"size", settings.size.has_value()}}) {
+    if (given)
+      faults.push_back({flag, "it goes with a camera, and the source is none", "leave it out"});
+  }
+}
+
 LiveCamera open_camera(const std::filesystem::path& path, const CameraSettings& settings,
                        double fps, Describer& describer, const RealTimeSettings& real_time,
                        Clock& clock) {

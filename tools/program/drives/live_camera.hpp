@@ -21,6 +21,10 @@ struct LiveCamera {
 /// Whether a path means a camera rather than a recording: a device, or a name in /dev.
 [[nodiscard]] bool is_camera(const std::filesystem::path& path);
 
+/// Adds a fault for what is asked of a camera where the source is none.
+void check_camera(const CameraSettings& settings, const std::filesystem::path& source,
+                  Faults& faults);
+
 /// Opens a camera in the cheapest mode that serves the describer, warms decoder and describer up
 /// for it, and starts to capture. Waits a while for one that is busy. Throws SetupError.
 /// @param fps   frames a second wanted   @param clock lives longer than the source

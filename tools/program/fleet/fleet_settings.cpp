@@ -43,6 +43,8 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
   if (settings.name.empty()) {
     if (!settings.robot.empty()) faults.push_back({"robot", "there are no others", "--fleet NAME"});
     if (settings.novel) faults.push_back({"fleet-tell", "nothing is told", "--fleet NAME"});
+    if (settings.places != FleetSettings{}.places)
+      faults.push_back({"fleet-places", "there are no others", "--fleet NAME"});
     if (settings.kbps != 0.0) faults.push_back({"fleet-kbps", "nothing is told", "--fleet NAME"});
     return;
   }

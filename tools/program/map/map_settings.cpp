@@ -41,8 +41,14 @@ void add_thumbnail_option(OptionTable& options, MapSettings& settings) {
 
 void check(const MapSettings& settings, bool reference, Faults& faults) {
   if (settings.file.empty()) {
-    if (settings.read_only) faults.push_back({"read-only", "there is no map", "--map FILE"});
-    if (!settings.session.empty()) faults.push_back({"session", "there is no map", "--map FILE"});
+    const MapSettings usual;
+    for (const auto& [flag, given] : {std::pair{"read-only", settings.read_only},
+                                      {"session", !settings.session.empty()},
+                                      {"grow", settings.novel != usual.novel},
+                                      {"save-every-s", settings.save_every_s != usual.save_every_s},
+                                      {"thumbnails", settings.thumbnails != usual.thumbnails}}) {
+      if (given) faults.push_back({flag, "there is no map", "--map FILE"});
+    }
     return;
   }
   // It is opened once the form of the drive's places is known.

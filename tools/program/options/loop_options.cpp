@@ -74,6 +74,10 @@ Budget budget(const LoopSettings& settings, Faults& faults) {
 }
 
 OverloadRule overload_rule(const LoopSettings& settings, Faults& faults) {
+  if (settings.policy != OverloadPolicy::every_nth && settings.every != LoopSettings{}.every) {
+    faults.push_back({"overload-every", "the newest frame is taken, not every n-th",
+                      "--overload-policy every-nth, or leave it out"});
+  }
   return {settings.policy, count(settings.every, 2, "every", faults),
           count(settings.after, 1, "after", faults), count(settings.recover, 1, "recover", faults)};
 }

@@ -199,6 +199,38 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings) {
                 "rows around the best that cannot be the runner-up [10]");
 }
 
+void check_effects(const MatcherSettings& settings, const MatcherConfig& config, Faults& faults) {
+  const MatcherConfig usual;
+  const bool learns = config.standardisation.on;
+  const bool slices = scans(config) && !settings.slice_given;
+  const char* const nothing_scanned = "no part of the map is scanned";
+  // A default that is written out is what happens anyway.
+  const bool seconds_given = settings.relocalise_s != MatcherSettings{}.relocalise_s;
+  struct Idle {
+    const char* flag;
+    bool is;
+    const char* why;
+    const char* remedy = "leave it out";
+  };
+  for (const Idle& idle :
+       {Idle{"full-map", config.use == Use::localise && config.full_map != usual.full_map,
+             "a map that is only localised in is never full",
+             "close loops within the drive, or leave it out"},
+        Idle{"standardise-prior",
+             !learns && config.standardisation.prior_frames != usual.standardisation.prior_frames,
+             "features are not weighed", "--standardise on, or leave it out"},
+        Idle{"standardise-horizon",
+             !learns && config.standardisation.horizon != usual.standardisation.horizon,
+             "features are not weighed", "--standardise on, or leave it out"},
+        Idle{"slice", settings.slice_given && !scans(config), nothing_scanned},
+        Idle{"relocalise-s", seconds_given && !slices,
+             settings.slice_given ? "--slice says how many places a frame scans" : nothing_scanned},
+        Idle{"distances", config.relocalising.distances != 0 && !relocalises(config),
+             "it goes with relocalising, which is off"}}) {
+    if (idle.is) faults.push_back({idle.flag, idle.why, idle.remedy});
+  }
+}
+
 void suit_slice(MatcherConfig& config, const MatcherSettings& settings,
                 std::size_t places) noexcept {
   if (settings.slice_given) return;

@@ -43,6 +43,10 @@ void add_matcher_options(OptionTable& options, MatcherSettings& settings);
 /// @return the configuration to build a detector with, if there were none
 [[nodiscard]] MatcherConfig resolve(const MatcherSettings& settings, Use use, Faults& faults);
 
+/// Adds a fault for what does nothing in such a configuration. Experiments do not ask: their lists
+/// may hold other ones, too.
+void check_effects(const MatcherSettings& settings, const MatcherConfig& config, Faults& faults);
+
 /// Chooses how many places a frame looks at, unless somebody said: as many as it takes to go round
 /// the map in `relocalise_s` at 25 frames a second, from 4,096 up to what costs a tenth of a
 /// frame's 40 ms. It follows from counts alone, so that answers are the same on every machine.

@@ -92,18 +92,6 @@ void open_outputs(RunSetup& setup, const RunSettings& settings, Faults& faults) 
 
 bool is_live(const std::filesystem::path& source) { return is_camera(source) || is_topic(source); }
 
-/// Adds a fault for what is asked of a camera where there is none.
-void check_camera(const RunSettings& settings, Faults& faults) {
-  const bool camera = is_camera(settings.source);
-  const bool live = is_live(settings.source) || settings.pace == Pace::live;
-  for (const auto& [flag, given] : {std::pair{"format", settings.camera.format && !camera},
-                                    {"size", settings.camera.size && !camera},
-                                    {"give-up-s", settings.give_up_s > 0.0 && !live}}) {
-    if (given)
-      faults.push_back({flag, "it goes with a camera, and the source is none", "leave it out"});
-  }
-}
-
 /// What can be opened twice: before there is a describer, and for it.
 void open_recordings(RunSetup& setup, const RunSettings& settings, const DriveSettings& drive,
                      Faults& faults) {
@@ -178,7 +166,15 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
     faults.push_back({"pictures", "at live pace frames may be missing from them",
                       "leave --pace live or --pictures out"});
   }
-  check_camera(settings, faults);
+  check_camera(settings.camera, settings.source, faults);
+  if (settings.give_up_s > 0.0 && !is_live(settings.source) && settings.pace != Pace::live) {
+    faults.push_back(
+        {"give-up-s", "it goes with a camera, and the source is none", "leave it out"});
+  }
+  check_effects(settings.matcher, setup.config, faults);
+  std::vector<std::filesystem::path> drives = settings.drive.training;
+  drives.insert(drives.end(), {settings.source, settings.reference});
+  check_reading(settings.drive, drives, faults);
   DriveSettings drive = settings.drive;
   drive.difference = setup.config.difference;
   const bool pictures = !is_described(settings.source);
@@ -189,6 +185,8 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   if (pictures || (given && !is_described(settings.reference))) {
     suit_descriptor(drive, setup.config.difference, faults);
     setup.describer = open_describer(drive, faults);
+  } else {
+    refuse_describing(drive, "the drives are described already", faults);
   }
   if (setup.describer || !learns) open_recordings(setup, settings, drive, faults);
   const bool live_odometry = listens_to_odometry(settings.loops, is_live(settings.source));

@@ -39,6 +39,10 @@ void describe(const DescribeSettings& settings, Faults faults) {
     faults.push_back({"source", settings.source.string() + " holds descriptors already",
                       "give an image folder or a video"});
   }
+  check_camera(settings.camera, settings.source, faults);
+  std::vector<std::filesystem::path> drives = settings.drive.training;
+  drives.push_back(settings.source);
+  check_reading(settings.drive, drives, faults);
   if (settings.out.empty()) faults.push_back({"out", "not given", "--out D.npy"});
   const auto open = [&] {
     if (!live && !settings.source.empty() && !is_described(settings.source)) {

@@ -60,6 +60,7 @@ void match(const MatchSettings& settings, Faults faults) {
   check(settings.map, !settings.reference.empty(), faults);
   MatcherConfig config =
       resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
+  check_effects(settings.matcher, config, faults);
   // A recording is there whole, so that places can be read once for many frames.
   config.frames_at_once = MatcherConfig::most_frames_at_once;
   std::optional<files::Matrix> query;

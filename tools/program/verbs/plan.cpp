@@ -67,6 +67,7 @@ OthersPlan plan_others(const PlanSettings& settings, MatcherConfig config, const
 void plan(const PlanSettings& settings, Faults faults) {
   MatcherConfig config =
       resolve(settings.matcher, settings.close_loops ? Use::close_loops : Use::localise, faults);
+  check_effects(settings.matcher, config, faults);
   suit_slice(config, settings.matcher, settings.places);
   const Capacity capacity{settings.places, settings.descriptor_size};
   for (Fault& fault : capacity_faults(config, capacity)) faults.push_back(std::move(fault));

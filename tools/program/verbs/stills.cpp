@@ -96,6 +96,7 @@ Setup set_up(const StillsVerbSettings& settings, Faults faults) {
           std::make_unique<WatchedSource>(open_drive(settings.source, "source", settings.drive));
     });
   }
+  check_reading(settings.drive, {&settings.source, 1}, faults);
   if (settings.out.empty()) {
     faults.push_back({"out", "not given", "--out DIR"});
   } else {
