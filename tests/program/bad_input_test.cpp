@@ -547,6 +547,17 @@ TEST_F(BadInput, AReferenceOfMorePlacesThanAreLookedThrough) {
   EXPECT_EQ(shorter.err.find(told), std::string::npos);
 }
 
+TEST_F(BadInput, DrivesWithoutAnyByte) {
+  // Read, the kernel's log keeps its reader waiting, and no signal ends that.
+  std::filesystem::create_symlink("/proc/kmsg", file("log.avi"));
+  std::filesystem::create_symlink("/proc/kmsg", file("log.npy"));
+  folder_.write("empty.mp4", "");
+  expect_refused("run --source log.avi --reference log.npy",
+                 {"log.avi: is empty", "log.npy: is empty"});
+  expect_refused("describe --source empty.mp4 --out d.npy", {"empty.mp4: is empty"});
+  expect_match_refused("--query log.npy", {"log.npy: is empty"});
+}
+
 TEST_F(BadInput, FlagsThatDoNothing) {
   folder_.write("video.avi", "");
   folder_.write("drive.mcap", "");

@@ -53,11 +53,16 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
   return count;
 }
 
-/// Refuses a map, which is no drive, before a reader of drives says that it knows no such format.
-void refuse_map(const std::filesystem::path& path) {
+/// Refuses a map, which is no drive, before a reader of drives says that it knows no such format,
+/// and what has no bytes: of the kernel's own files (`/proc/kmsg`) some keep their readers waiting
+/// for ever.
+void refuse_no_drive(const std::filesystem::path& path) {
   constexpr std::string_view magic = "SQLite format 3";
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return;
+  if (std::filesystem::file_size(path, error) == 0) {
+    throw SetupError({path.string(), "is empty", "name a drive"});
+  }
   std::string start(magic.size(), '\0');
   std::ifstream(path, std::ios::binary)
       .read(start.data(), static_cast<std::streamsize>(start.size()));
@@ -140,7 +145,7 @@ void check_reading(const DriveSettings& settings, std::span<const std::filesyste
 }
 
 files::Matrix read_descriptors(const std::filesystem::path& path, Difference difference) {
-  refuse_map(path);
+  refuse_no_drive(path);
   files::Matrix descriptors = files::read_npy(path);
   const std::size_t changed = difference == Difference::euclidean ? normalise_rows(descriptors) : 0;
   if (changed > 0) {
@@ -164,7 +169,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
   if (bags::is_bag(path)) {
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
-  refuse_map(path);
+  refuse_no_drive(path);
   const PictureNeeds needs = describer == nullptr ? PictureNeeds{} : describer->needs();
   return opencv::open_source(path, {.frames_per_second = settings.fps,
                                     .jpeg = std::make_unique<turbojpeg::JpegFileDecoder>(false),
