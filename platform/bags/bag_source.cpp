@@ -8,6 +8,7 @@
 
 #include "ros/pictures.hpp"
 #include "seqloop/bags/bag.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/fixed_text.hpp"
 
@@ -20,7 +21,7 @@ std::string list(const std::vector<Topic>& topics) {
   std::string text;
   for (std::size_t i = 0; i < std::min(topics.size(), most); ++i)
     text += (i == 0 ? "" : ", ") + topics[i].name + " (" + topics[i].type + ", " +
-            std::to_string(topics[i].messages) + " messages)";
+            counted(topics[i].messages, "message") + ")";
   return text + (topics.size() > most ? ", ..." : "");
 }
 

@@ -9,6 +9,7 @@
 #include "opencv/detail/guarded.hpp"
 #include "opencv/detail/picture_scaler.hpp"
 #include "opencv/detail/training.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/principal_components.hpp"
 
@@ -58,11 +59,11 @@ PrincipalComponents learn(NetPicture& picture, std::span<FrameSource* const> tra
     pictures.insert(pictures.end(), picture.bytes().begin(), picture.bytes().end());
   });
   if (count.pictures < components + 1) {
-    throw SetupError(Fault{
-        "training",
-        "has " + text(count) + ", too few to remove " + std::to_string(components) + " components",
-        "give longer drives, or remove at least one component fewer than there "
-        "are pictures"});
+    throw SetupError(
+        Fault{"training",
+              "has " + text(count) + ", too few to remove " + counted(components, "component"),
+              "give longer drives, or remove at least one component fewer than there "
+              "are pictures"});
   }
   return {pictures, size, components, between};
 }

@@ -19,6 +19,7 @@
 #include "opencv/detail/picture_file.hpp"
 #include "opencv/detail/picture_view.hpp"
 #include "opencv/detail/quiet_log.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 #include "seqloop/opencv/file_codecs.hpp"
 
@@ -114,7 +115,7 @@ class VideoSource::Impl {
     const std::uint64_t begun = pictures_ ? pictures_->begun() : next_;
     if (ended_ && declared_ && begun < *declared_)
       lines.push_back("the video ended after " + std::to_string(begun) + " of the " +
-                      std::to_string(*declared_) + " frames that it declares");
+                      counted(*declared_, "frame") + " that it declares");
     return lines;
   }
 

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/sqlite/map_file.hpp"
 #include "sqlite/database.hpp"
 #include "sqlite/little_endian.hpp"
@@ -263,7 +264,7 @@ class Copying {
     } else if (places < session.facts.places) {
       result_.lost.push_back("session '" + name +
                              "': " + std::to_string(session.facts.places - places) + " of " +
-                             std::to_string(session.facts.places) + " places");
+                             counted(session.facts.places, "place"));
     }
     if (!session.statistics && session.facts.statistics) {
       result_.lost.push_back("session '" + name + "': its statistics");

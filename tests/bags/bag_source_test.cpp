@@ -101,7 +101,7 @@ TEST(BagSource, WhichTopic) {
       folder, file.message(1, 1, picture(start, 1)).message(2, 1, picture(start, 2)).finish());
   EXPECT_TRUE(test::says(
       refusal(path),
-      "has several topics with pictures: /left (sensor_msgs/msg/Image, 1 messages), /odd"));
+      "has several topics with pictures: /left (sensor_msgs/msg/Image, 1 message), /odd"));
   EXPECT_TRUE(test::says(refusal(path), "choose one: --topic"));
   EXPECT_TRUE(test::says(refusal(path, "/gone"), "has no topic /gone; with pictures: /left"));
   EXPECT_TRUE(test::says(refusal(path, "/talk"), "/talk is std_msgs/msg/String, no pictures"));

@@ -65,11 +65,11 @@ class Robot:
 
     def told(self) -> int:
         """@return places, those of earlier sessions included"""
-        return int(re.search(r"(\d+) places were told", self.said.read_text())[1])
+        return int(re.search(r"(\d+) places? (?:was|were) told", self.said.read_text())[1])
 
     def counted(self) -> tuple[int, int]:
         """@return places of others, sessions"""
-        found = re.search(r"of others (\d+) places of (\d+) sessions", self.said.read_text())
+        found = re.search(r"of others (\d+) places? of (\d+) session", self.said.read_text())
         return int(found[1]), int(found[2])
 
 

@@ -80,7 +80,7 @@ def fresh_keeper(seqloop: str, fast_end: str, work: pathlib.Path) -> None:
     words = said.read_text() if keeper.wait(timeout=60) == 0 else "it failed"
     expect(words.count("robot 'nothing', session 'today': it says 0 bytes a place, and a map has 1 to 67108864: none") == 1
            and words.count(" bytes a place") == 1, f"it says once that such places cannot be: {words}")
-    expect("3 places of 1 sessions are kept" in words, "and keeps those that can")
+    expect("3 places of 1 session are kept" in words, "and keeps those that can")
 
 
 def main(seqloop: str, fast_end: str, work: pathlib.Path) -> None:

@@ -193,7 +193,7 @@ def misses(runs: list[Robot]) -> str:
 
 
 def told(runs: list[Robot]) -> int:
-    return sum(int(re.search(r"(\d+) places were told", pathlib.Path(run.said.name).read_text())[1]) for run in runs)
+    return sum(int(re.search(r"(\d+) places? (?:was|were) told", pathlib.Path(run.said.name).read_text())[1]) for run in runs)
 
 
 def drive_all(seqloop: str, work: pathlib.Path, network: Network, robots: int, fleet: bool, cut_off: bool,

@@ -51,8 +51,8 @@ def main(seqloop: str, apart: float, work: pathlib.Path) -> None:
         for robot in robots:
             robot.end()
         said = [pathlib.Path(robot.said.name).read_text() for robot in robots]
-        told = [int(re.search(r"(\d+) places were told", words)[1]) for words in said]
-        heard = [int(re.search(r"of others (\d+) places", words)[1]) for words in said]
+        told = [int(re.search(r"(\d+) places? (?:was|were) told", words)[1]) for words in said]
+        heard = [int(re.search(r"of others (\d+) place", words)[1]) for words in said]
         # What was saved in the last second may not have come.
         expect(all(abs(heard[one] - told[1 - one]) <= 2 * RATE and heard[one] > still[one] + apart * RATE
                    for one in range(2)), f"whole again, each gets what it has missed: {heard} of {told[::-1]}")

@@ -35,9 +35,9 @@ class Descriptor : public test::Program {
   files::Matrix described(const std::string& arguments) const {
     const test::Outcome outcome = run("describe --source drive --out d.npy " + arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("1 unreadable frames are rows of zeros"), std::string::npos)
+    EXPECT_NE(outcome.err.find("rows of zeros: 1 unreadable frame\n"), std::string::npos)
         << outcome.err;
-    EXPECT_NE(outcome.err.find("1 frames are blank"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("1 frame is blank"), std::string::npos) << outcome.err;
     files::Matrix rows = files::read_npy(file("d.npy"));
     EXPECT_EQ(rows.rows, 12U);
     EXPECT_EQ(squared_norm(rows.row(11)), 0.0);

@@ -57,8 +57,9 @@ TEST_F(DriveFaults, ADamagedJpegIsAFrameError) {
   expect_says(run("run --source drive --ds 4 --exclude 10 --out r.jsonl"), 0,
               {"frame 7: 7.jpg: the JPEG picture is damaged (", "1 frame_error"});
   EXPECT_EQ(lines("r.jsonl").at(7)["status"], "frame_error");
-  expect_says(run("describe --source drive --out d.npy"), 0,
-              {"frame 7: 7.jpg: the JPEG picture is damaged", "1 unreadable frames"});
+  expect_says(
+      run("describe --source drive --out d.npy"), 0,
+      {"frame 7: 7.jpg: the JPEG picture is damaged", "rows of zeros: 1 unreadable frame\n"});
   expect_says(run("run --source drive --reference drive --ds 4 --out r.jsonl"), 0,
               {"reference frame 7: 7.jpg: the JPEG picture is damaged"});
 }
@@ -108,11 +109,11 @@ TEST_F(DriveFaults, APictureThatIsNoneEndsNoVideo) {
   folder_.write("drive.avi", bytes);
   const std::string fault = "frame 7: the frame is no JPEG picture";
   expect_says(run("stills --source drive.avi --out stills"), 0,
-              {fault, "50 stills", "1 unreadable frames are empty files"});
+              {fault, "50 stills", "empty files: 1 unreadable frame\n"});
   EXPECT_EQ(std::filesystem::file_size(file("stills/000007.png")), 0U);
   EXPECT_GT(std::filesystem::file_size(file("stills/000049.png")), 0U);
   expect_says(run("describe --source drive.avi --out d.npy"), 0,
-              {fault, "50 frames", "1 unreadable frames"});
+              {fault, "50 frames", "rows of zeros: 1 unreadable frame\n"});
 }
 
 TEST_F(DriveFaults, AVideoWithoutAFrameRateIsRemarkedOn) {

@@ -172,12 +172,9 @@ TEST(PoseGraph, WhatOfTheOdometryIsMissingIsTold) {
   EXPECT_EQ(
       graph.notes(),
       (std::vector<std::string>{
-          "pose graph: 19 poses, 0 loops",
-          "1 frames lie outside of the odometry's times: they have no pose",
-          "11 frames lie between two poses of the odometry that are more than 10 s apart: they "
-          "have "
-          "no pose",
-          "1 poses of the odometry are left out: they are none, or their stamps do not rise"}));
+          "pose graph: 19 poses, 0 loops", "no pose: 1 frame outside of the odometry's times",
+          "no pose: 11 frames between two poses of the odometry that are more than 10 s apart",
+          "left out of the odometry: 1 pose that is none, or whose stamp does not rise"}));
 }
 
 TEST(Odometry, TimesOfAnotherClockAreRefused) {
@@ -202,9 +199,9 @@ TEST(PoseGraph, VerticesOdometryAndLoops) {
   unsure.gate = Gate::unsure;
   const std::vector answers{loop(9, 2, 1.0F), loop(5, 0, 1.0F), unsure, loop(8, 3, 0.5F)};
   graph.add(answers);
-  EXPECT_EQ(graph.notes(), (std::vector<std::string>{
-                               "pose graph: 9 poses, 2 loops",
-                               "1 frames lie outside of the odometry's times: they have no pose"}));
+  EXPECT_EQ(graph.notes(),
+            (std::vector<std::string>{"pose graph: 9 poses, 2 loops",
+                                      "no pose: 1 frame outside of the odometry's times"}));
   Attempts attempts;
   graph.commit(attempts);
   attempts.end();

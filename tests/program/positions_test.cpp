@@ -58,7 +58,7 @@ TEST_F(EvalByPositions, OneRowsToleranceThroughTheFlags) {
       << words.out;
   folder_.write("t.csv", "query,reference\n0,1\n1,4\n2,4\n");
   const auto asked = run("eval --matches m.csv --truth t.csv --tolerance 1");
-  EXPECT_NE(asked.out.find("2 of them right (within 1 frames)"), std::string::npos) << asked.out;
+  EXPECT_NE(asked.out.find("2 of them right (within 1 frame)"), std::string::npos) << asked.out;
 }
 
 TEST_F(EvalByPositions, OfOneDriveTheFirstLapIsNoLoop) {

@@ -23,6 +23,7 @@
 #include "program/options/flag_names.hpp"
 #include "program/process/build_info.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/opencv/silence.hpp"
 
 namespace seqloop::program {
@@ -88,8 +89,8 @@ std::string footer(const Verb& verb, bool show_all) {
       std::ranges::count(verb.options.options(), Shown::in_help_all, &Option::shown);
   std::string text = verb.tasks;
   if (hidden > 0 && !show_all)
-    text += fmt::format("{}{} more flags: seqloop {} --help-all", text.empty() ? "" : "\n\n",
-                        hidden, verb.name);
+    text += fmt::format("{}{}: seqloop {} --help-all", text.empty() ? "" : "\n\n",
+                        counted(static_cast<std::uint64_t>(hidden), "more flag"), verb.name);
   return text;
 }
 

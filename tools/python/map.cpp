@@ -13,6 +13,7 @@
 #include "program/options/verb.hpp"
 #include "python/interpreter_lock.hpp"
 #include "python/recordings.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -93,7 +94,7 @@ std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   if (places) {
     if (chosen.file->places() > drive) {
       throw SetupError({"max_places",
-                        fmt::format("the map has {} places already", chosen.file->places()),
+                        "the map has " + counted(chosen.file->places(), "place") + " already",
                         "raise max_places"});
     }
     chosen.capacity.places = drive;

@@ -3,6 +3,7 @@
 
 #include "opencv/detail/one_line.hpp"
 #include "opencv/detail/picture_view.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::opencv {
@@ -29,7 +30,7 @@ TrainingCount for_each_picture(std::span<FrameSource* const> drives,
 }
 
 std::string text(const TrainingCount& count) {
-  std::string words = std::to_string(count.pictures) + " pictures that can be read";
+  std::string words = counted(count.pictures, "picture") + " that can be read";
   if (count.unreadable > 0) words += " and " + std::to_string(count.unreadable) + " that cannot";
   return words;
 }

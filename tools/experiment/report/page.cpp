@@ -10,6 +10,7 @@
 #include "experiment/report/page_style.hpp"
 #include "experiment/report/table.hpp"
 #include "experiment/report/text.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -110,7 +111,7 @@ std::string all_results(const Chosen& all) {
   for (std::string& name : setting_names(all)) table.rows.push_back(std::move(name));
   for (const Column& column : number_columns()) table.values.push_back(column.name);
   return fmt::format(
-      "<details><summary>{} results</summary>\n{}</details>\n", all.size(),
+      "<details><summary>{}</summary>\n{}</details>\n", counted(all.size(), "result"),
       table_html(all, table, "Also in <a href=\"results.csv\">results.csv</a>.", Best::plain));
 }
 

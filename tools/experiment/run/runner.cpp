@@ -25,6 +25,7 @@
 #include "program/process/build_info.hpp"
 #include "program/process/outputs.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/opencv/threads.hpp"
 
@@ -355,9 +356,9 @@ class Runner {
     for (std::size_t i = 0; i < experiment_.pairs.size(); ++i) {
       if (!kept_frames_[i]) continue;
       all.push_back({experiment_.pairs[i].name,
-                     fmt::format("{} frames compared; left out: {} dark, {} standing",
-                                 kept_frames_[i]->frames.size(), kept_frames_[i]->dark,
-                                 kept_frames_[i]->standing)});
+                     fmt::format("{} compared; left out: {} dark, {} standing",
+                                 counted(kept_frames_[i]->frames.size(), "frame"),
+                                 kept_frames_[i]->dark, kept_frames_[i]->standing)});
     }
     return all;
   }

@@ -17,6 +17,7 @@
 #include "ros/wall_time.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/bags/bag_source.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/source.hpp"
@@ -149,8 +150,8 @@ files::Matrix read_descriptors(const std::filesystem::path& path, Difference dif
   files::Matrix descriptors = files::read_npy(path);
   const std::size_t changed = difference == Difference::euclidean ? normalise_rows(descriptors) : 0;
   if (changed > 0) {
-    say("{}: {} of {} rows were not unit length and have been made so", path.string(), changed,
-        descriptors.rows);
+    say("{}: not of unit length, and made so: {} of {}", path.string(), changed,
+        counted(descriptors.rows, "row"));
   }
   return descriptors;
 }
@@ -191,7 +192,8 @@ void tell_notes(const std::filesystem::path& path, const FrameSource& source) {
 void tell_blank(const std::filesystem::path& path, std::uint64_t blank, std::uint64_t frames) {
   if (blank == 0) return;
   if (blank < frames) {
-    say("{}: {} of {} frames are blank, without any feature", path.string(), blank, frames);
+    say("{}: {} of {} frames {} blank, without any feature", path.string(), blank, frames,
+        are(blank));
   } else {
     say("{}: all frames are blank, without any feature: there is nothing to recognise a place by",
         path.string());

@@ -9,6 +9,7 @@
 
 #include "program/drives/drive_length.hpp"
 #include "program/drives/map_builder.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
@@ -59,8 +60,8 @@ void check_match(Faults& faults, const MatcherConfig& config, const files::Matri
                  const files::Matrix& query) {
   if (reference != nullptr && query.columns != reference->columns) {
     faults.push_back({"reference, query",
-                      fmt::format("{} values in a row of one, {} in a row of the other",
-                                  reference->columns, query.columns),
+                      fmt::format("{} in a row of one, {} in a row of the other",
+                                  counted(reference->columns, "value"), query.columns),
                       "describe both with the same model and layer"});
   }
   if (validate(config).empty()) {

@@ -10,6 +10,7 @@
 #include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/opencv/bag_of_words.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
 #include "seqloop/opencv/change_removal.hpp"
@@ -91,8 +92,8 @@ std::unique_ptr<Describer> learn_removal(std::unique_ptr<opencv::DnnDescriber> n
   auto removal = std::make_unique<opencv::ChangeRemoval>(std::move(net), training, components,
                                                          stop_if_interrupted);
   if (removal->components() < components) {
-    say("remove-components: the training pictures vary in {} directions only, not {}",
-        removal->components(), components);
+    say("remove-components: the training pictures vary in {} only, not {}",
+        counted(removal->components(), "direction"), components);
   }
   return removal;
 }
@@ -188,7 +189,8 @@ std::unique_ptr<Describer> open_describer(const DriveSettings& settings, Faults&
     });
   }
   const bool learns = !settings.training.empty();
-  if (learns && own.empty() && faults.empty()) say("learning from {} drives", training.size());
+  if (learns && own.empty() && faults.empty())
+    say("learning from {}", counted(training.size(), "drive"));
   std::unique_ptr<Describer> describer;
   collect(faults, [&] {
     if (learns && !faults.empty()) {

@@ -14,6 +14,7 @@
 #include "program/fleet/through_own.hpp"
 #include "program/run/frame_json.hpp"
 #include "program/run/source_numbers.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -96,10 +97,11 @@ class Fleet::Impl {
   [[nodiscard]] std::string end() {
     talk_.end();
     const FleetTalk::Counts counts = talk_.counts();
-    std::string text = fmt::format(
-        "{} places were told; of others {} places of {} sessions are known, and {} "
-        "frames closed loops with them",
-        counts.told, counts.heard, counts.sessions, closed_);
+    std::string text =
+        fmt::format("{} {} told; of others {} of {} {} known, and {} closed loops with them",
+                    counted(counts.told, "place"), counts.told == 1 ? "was" : "were",
+                    counted(counts.heard, "place"), counted(counts.sessions, "session"),
+                    are(counts.heard), counted(closed_, "frame"));
     if (novel_) text += fmt::format("; {} were not told, being no novel ones", counts.known);
     if (counts.untold > 0) {
       text += fmt::format("; {} were not told, for the network or --fleet-kbps is too slow",

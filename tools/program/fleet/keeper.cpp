@@ -12,6 +12,7 @@
 #include "program/fleet/round_time.hpp"
 #include "program/process/json_text.hpp"
 #include "program/process/say.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop::program {
@@ -371,7 +372,8 @@ std::string Keeper::end() {
   std::uint64_t places = 0;
   const auto sessions = file_->sessions();
   for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
-  return fmt::format("{} places of {} sessions are kept", places, sessions.size());
+  return fmt::format("{} of {} {} kept", counted(places, "place"),
+                     counted(sessions.size(), "session"), are(places));
 }
 
 std::string Keeper::unsaved() const {
@@ -380,9 +382,8 @@ std::string Keeper::unsaved() const {
   for (const Session& session : sessions_) places += session.records.size();
   // While the disk is full, more may wait in DDS, which nobody has counted.
   return fmt::format(
-      "not saved of what was told: {} places or more: {}; robots that still run "
-      "tell it again",
-      places, failing_);
+      "not saved of what was told: {} or more: {}; robots that still run tell it again",
+      counted(places, "place"), failing_);
 }
 
 }  // namespace seqloop::program

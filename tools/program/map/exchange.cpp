@@ -21,6 +21,7 @@
 #include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/json_text.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -108,7 +109,7 @@ void check_cells(const fs::path& file, const std::vector<std::vector<std::string
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].size() == columns) continue;
     throw SetupError({fmt::format("{}:{}", file.string(), i + 2),
-                      fmt::format("{} cells and not {}", rows[i].size(), columns)});
+                      fmt::format("{} and not {}", counted(rows[i].size(), "cell"), columns)});
   }
 }
 
@@ -134,8 +135,8 @@ std::vector<std::byte> places_in(const fs::path& file, std::uint64_t bytes) {
   const std::uint64_t from = files::npy_data_offset(start, file.string());
   if (from > all.size() || all.size() - from != bytes) {
     throw SetupError(
-        {file.string(),
-         fmt::format("its numbers are not the {} bytes of the places in places.csv", bytes)});
+        {file.string(), fmt::format("its numbers are not the {} of the places in places.csv",
+                                    counted(bytes, "byte"))});
   }
   all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(from));
   return all;

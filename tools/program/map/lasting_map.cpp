@@ -11,6 +11,7 @@
 
 #include "program/map/map_writer.hpp"
 #include "program/map/stored_map.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -185,21 +186,21 @@ class SqliteMap : public LastingMap {
   }
 
   [[nodiscard]] std::string summary() const override {
-    if (!writer_) return fmt::format("the map has {} places; it was only read", map_->size());
+    if (!writer_) return "the map has " + counted(map_->size(), "place") + "; it was only read";
     std::size_t places = map_->size();
     std::string gone;
     for (const Retired& retired : writer_->retired()) {
       places -= retired.places;
-      gone += fmt::format(
-          "; of '{}' {} places went, since later ones show the same, and left {} visits",
-          retired.session, retired.places, retired.visits);
+      gone += fmt::format("; of '{}' {} went, since later ones show the same, and left {}",
+                          retired.session, counted(retired.places, "place"),
+                          counted(retired.visits, "visit"));
     }
-    std::string text =
-        fmt::format("the map has {} places now; {} frames are saved, {} of them as places", places,
-                    writer_->saved(), writer_->saved_places()) +
-        gone;
+    std::string text = fmt::format("the map has {} now; {} {} saved, {} of them as places",
+                                   counted(places, "place"), counted(writer_->saved(), "frame"),
+                                   are(writer_->saved()), writer_->saved_places()) +
+                       gone;
     if (const auto missing = writer_->missing_thumbnails(); missing > 0) {
-      text += fmt::format("; there was no room for {} thumbnails", missing);
+      text += "; there was no room for " + counted(missing, "thumbnail");
     }
     return text;
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "program/options/verb.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -163,9 +164,10 @@ evaluation::ThresholdOn parse_threshold(std::string_view text) {
 
 std::string how_near(const TruthSettings& settings, const evaluation::Truth& truth) {
   if (by_positions(settings)) {
-    return fmt::format("{} metres", settings.radius_m.value_or(default_radius_m));
+    const double radius_m = settings.radius_m.value_or(default_radius_m);
+    return fmt::format("{} metre{}", radius_m, radius_m == 1.0 ? "" : "s");
   }
-  std::string asked = fmt::format("{} frames", tolerance(settings));
+  std::string asked = counted(tolerance(settings), "frame");
   switch (truth.own_tolerances()) {
     case evaluation::OwnTolerances::all:
       return "the truth's own tolerances";

@@ -8,6 +8,7 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/detail/integer_kernels.hpp"
 #include "seqloop_commit.hpp"
 
@@ -41,9 +42,9 @@ std::string program_state() {
 }
 
 std::string condition_line() {
-  return fmt::format("{}, {} cores, kernels {}; compiler {}; OpenCV " CV_VERSION "; {}",
-                     processor(), std::thread::hardware_concurrency(), best_integer_kernels().name,
-                     __VERSION__, version_line());
+  return fmt::format("{}, {}, kernels {}; compiler {}; OpenCV " CV_VERSION "; {}", processor(),
+                     counted(std::thread::hardware_concurrency(), "core"),
+                     best_integer_kernels().name, __VERSION__, version_line());
 }
 
 }  // namespace seqloop::program

@@ -9,6 +9,7 @@
 #include "program/options/verb.hpp"
 #include "program/run/closure.hpp"
 #include "program/run/odometry.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 
@@ -158,8 +159,8 @@ std::vector<std::string> LoopOutputs::notes() const {
   std::vector<std::string> lines = graph_->notes();
   const auto leave_out = [&lines](std::uint64_t loops, const char* whose) {
     if (loops == 0) return;
-    lines.push_back(fmt::format(
-        "{} loops with places of {} are left out of it: their poses are not known", loops, whose));
+    lines.push_back(fmt::format("{} with places of {} {} left out of it: their poses are not known",
+                                counted(loops, "loop"), whose, are(loops)));
   };
   leave_out(of_earlier_, "earlier sessions, or that the map has forgotten,");
   leave_out(of_others_, "other robots");

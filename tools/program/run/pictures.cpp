@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/files/output_file.hpp"
 #include "seqloop/opencv/file_codecs.hpp"
@@ -221,7 +222,7 @@ void PictureRecorder::write_matrix(const std::filesystem::path& folder, const Pl
                             : order.number(map.size() - 1) + 1;
   });
   write_text(picture,
-             fmt::format("places over frames; dark: alike; red: {} matches", matches_.size()),
+             "places over frames; dark: alike; red: " + counted(matches_.size(), "match", "es"),
              {margin, margin / 2 - 12});
   write_png(folder / matrix_name, picture);
 }

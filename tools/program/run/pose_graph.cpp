@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -88,20 +89,20 @@ std::vector<std::string> PoseGraph::notes() const {
     return vertex(loop.frame) != nullptr && vertex(loop.match) != nullptr;
   };
   const auto edges = std::ranges::count_if(loops_, has_both);
-  std::vector<std::string> lines{
-      fmt::format("pose graph: {} poses, {} loops", vertices_.size(), edges)};
+  std::vector<std::string> lines{fmt::format("pose graph: {}, {}",
+                                             counted(vertices_.size(), "pose"),
+                                             counted(static_cast<std::uint64_t>(edges), "loop"))};
   if (without_pose_ > 0)
-    lines.push_back(fmt::format("{} frames lie outside of the odometry's times: they have no pose",
-                                without_pose_));
+    lines.push_back("no pose: " + counted(without_pose_, "frame") +
+                    " outside of the odometry's times");
   if (in_gaps_ > 0)
     lines.push_back(
-        fmt::format("{} frames lie between two poses of the odometry that are more than {} s "
-                    "apart: they have no pose",
-                    in_gaps_, Odometry::most_gap_s));
+        fmt::format("no pose: {} between two poses of the odometry that are more than {} s apart",
+                    counted(in_gaps_, "frame"), Odometry::most_gap_s));
   if (odometry_ && odometry_->left_out() > 0)
-    lines.push_back(fmt::format(
-        "{} poses of the odometry are left out: they are none, or their stamps do not rise",
-        odometry_->left_out()));
+    lines.push_back(
+        fmt::format("left out of the odometry: {} that is none, or whose stamp does not rise",
+                    counted(odometry_->left_out(), "pose")));
   return lines;
 }
 

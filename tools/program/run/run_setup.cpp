@@ -19,6 +19,7 @@
 #include "program/process/interruption.hpp"
 #include "program/process/outputs.hpp"
 #include "program/run/pictures.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/linux/recording_capture.hpp"
 #include "seqloop/opencv/file_codecs.hpp"
 
@@ -41,14 +42,14 @@ void choose_places(RunSetup& setup, const RunSettings& settings, const FrameSour
   }
   setup.why_places = {"max-places",
                       frames && *frames >= setup.places
-                          ? fmt::format("not given, and {} declares {} frames: there is room for "
-                                        "as many places",
-                                        name.string(), *frames)
+                          ? fmt::format("not given, and {} declares {}: there is room for as "
+                                        "many places",
+                                        name.string(), counted(*frames, "frame"))
                           : fmt::format("not given: there is room for {} places", setup.places),
                       "--max-places N makes room for fewer"};
   if (settings.max_places == 0) return;
   setup.places = settings.max_places;
-  setup.why_places = {"max-places", fmt::format("room for {} places is asked for", setup.places)};
+  setup.why_places = {"max-places", "room for " + counted(setup.places, "place") + " is asked for"};
 }
 
 /// Opens the map that lasts, and makes room for what it holds, too.
@@ -67,7 +68,7 @@ void open_map(RunSetup& setup, const RunSettings& settings, const DriveSettings&
     setup.why_places.why += fmt::format(", and for the {} of the map", setup.map->places());
   } else if (setup.map->places() > setup.places) {
     faults.push_back({"max-places",
-                      fmt::format("the map has {} places already", setup.map->places()),
+                      "the map has " + counted(setup.map->places(), "place") + " already",
                       "raise --max-places"});
   }
 }

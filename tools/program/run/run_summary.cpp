@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "program/process/milliseconds.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -62,7 +63,7 @@ std::uint64_t RunSummary::at(Gate gate) const noexcept {
 }
 
 std::string RunSummary::text() const {
-  std::string text = fmt::format("{} frames: {} match", frames(), at(Gate::match));
+  std::string text = fmt::format("{}: {} match", counted(frames(), "frame"), at(Gate::match));
   for (std::size_t i = index(Gate::match); i-- > index(Gate::frame_error);) {
     const auto gate = static_cast<Gate>(i);
     if (at(gate) > 0) text += fmt::format(", {} {}", at(gate), name(gate));
@@ -72,7 +73,7 @@ std::string RunSummary::text() const {
     text += fmt::format("  {:<10}{:>10}{:>10}{:>10}{:>10}\n", "ms", "p50", "p99", "p99.9", "max");
     for (const StageRecord& stage : stages()) text += stage_line(stage);
   }
-  text += fmt::format("  {} frames missed the budget", misses_);
+  text += fmt::format("  {} missed the budget", counted(misses_, "frame"));
   for (const auto& [limit, frames] : missed_) {
     if (frames > 0 || limit == "total") {
       text += fmt::format(", {} that of {:g} ms for {}", frames,
@@ -86,14 +87,14 @@ std::string RunSummary::text() const {
     text += ", 0 dropped\n";
   }
   if (at(Gate::no_frame) > 0) {
-    text += fmt::format("  {} times no frame came in time\n", at(Gate::no_frame));
+    text += fmt::format("  {} no frame came in time\n", counted(at(Gate::no_frame), "time"));
   }
   if (overloaded_ > 0) {
-    text += fmt::format("  {} frames under the overload policy\n", overloaded_);
+    text += fmt::format("  {} under the overload policy\n", counted(overloaded_, "frame"));
   }
   if (map_full_ > 0) {
-    text += fmt::format("  the map was full: {} frames became no places; raise --max-places\n",
-                        map_full_);
+    text += fmt::format("  the map was full: {} became no place{}; raise --max-places\n",
+                        counted(map_full_, "frame"), map_full_ == 1 ? "" : "s");
   }
   return text;
 }

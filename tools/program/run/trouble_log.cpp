@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/trouble_log.hpp"
+#include "seqloop/detail/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -56,14 +57,14 @@ void TroubleLog::tell_error(const ProcessedFrame& processed, Nanoseconds now) {
 
 void TroubleLog::tell(const OverloadWatch& watch, const OverloadRule& rule) {
   if (!watch.overloaded()) {
-    progress_->tell(
-        fmt::format("within the budget for {} frames: back to every frame", rule.recover));
+    progress_->tell(fmt::format("within the budget for {}: back to every frame",
+                                counted(rule.recover, "frame")));
   } else if (rule.policy == OverloadPolicy::every_nth) {
-    progress_->tell(fmt::format("{} frames in a row over the budget: taking one frame of {}",
-                                rule.after, rule.every));
+    progress_->tell(fmt::format("{} in a row over the budget: taking one frame of {}",
+                                counted(rule.after, "frame"), rule.every));
   } else {
-    progress_->tell(
-        fmt::format("{} frames in a row over the budget: dropping the oldest frames", rule.after));
+    progress_->tell(counted(rule.after, "frame") +
+                    " in a row over the budget: dropping the oldest frames");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "program/process/json_text.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "seqloop/bags/bag.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -75,7 +76,7 @@ void tell_of_bag(const BagSettings& settings, Faults faults) {
   if (words.size() == 2) {
     collect(faults, [&] { bag = bags::open_bag(words[1]); });
   } else if (!words.empty()) {
-    faults.push_back({"bag " + words[0], fmt::format("{} names after it", words.size() - 1),
+    faults.push_back({"bag " + words[0], counted(words.size() - 1, "name") + " after it",
                       "seqloop bag info FILE"});
   }
   refuse(std::move(faults));

@@ -11,6 +11,7 @@
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/files/npy_file.hpp"
 #include "seqloop/linux/steady_clock.hpp"
 
@@ -75,12 +76,15 @@ void describe(const DescribeSettings& settings, Faults faults) {
       settings.source.string(), *source, *describer,
       [&out](std::span<const float> row) { out->append(row); }, progress, {settings.frames, live});
   out->commit();
-  say("{} frames of {} values in {}", count.rows, describer->size(), settings.out.string());
-  if (count.unreadable > 0) say("{} unreadable frames are rows of zeros", count.unreadable);
+  say("{} of {} in {}", counted(count.rows, "frame"), counted(describer->size(), "value"),
+      settings.out.string());
+  if (count.unreadable > 0) say("rows of zeros: {}", counted(count.unreadable, "unreadable frame"));
   if (count.missing > 0) {
-    say("{} frames that were lost or dropped are rows of zeros", count.missing);
+    say("rows of zeros: {} lost or dropped", counted(count.missing, "frame"));
   }
-  if (count.blank > 0) say("{} frames are blank, without any feature", count.blank);
+  if (count.blank > 0) {
+    say("{} {} blank, without any feature", counted(count.blank, "frame"), are(count.blank));
+  }
 }
 
 }  // namespace

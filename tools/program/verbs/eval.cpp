@@ -74,10 +74,10 @@ void print_share(double share, std::string_view name) {
 
 void print_words(const evaluation::Measures& measures, std::uint64_t frames,
                  const std::string& near) {
-  fmt::print("{:>8} queries have a truth\n{:>8} answered, {} of them right (within {})\n", frames,
-             measures.answered, measures.correct, near);
+  fmt::print("{:>8} {} a truth\n{:>8} answered, {} of them right (within {})\n", frames,
+             frames == 1 ? "query has" : "queries have", measures.answered, measures.correct, near);
   if (measures.unknown > 0) {
-    fmt::print("{:>8} more answers are to frames that the truth does not list\n", measures.unknown);
+    fmt::print("{:>8} more to frames that the truth does not list\n", measures.unknown);
   }
   print_share(measures.precision, "precision");
   print_share(measures.recall, "recall");

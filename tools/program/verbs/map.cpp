@@ -14,6 +14,7 @@
 #include "program/process/outputs.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/sqlite/map_file.hpp"
 #include "seqloop/sqlite/recover.hpp"
 
@@ -38,8 +39,8 @@ std::uint64_t places_of(const std::vector<sqlite::SessionFacts>& sessions) {
 /// "80 places in 2 sessions"
 std::string content_of(const MapFile& map) {
   const std::vector<sqlite::SessionFacts> sessions = map.sessions();
-  return fmt::format("{} places in {} session{}", places_of(sessions), sessions.size(),
-                     sessions.size() == 1 ? "" : "s");
+  return fmt::format("{} in {}", counted(places_of(sessions), "place"),
+                     counted(sessions.size(), "session"));
 }
 
 /// Of the log beside it, in which what was saved may stand until the map is closed.
@@ -85,11 +86,11 @@ void info(const MapSettings& settings) {
     return;
   }
   std::string text = fmt::format(
-      "{} places of {} bytes, descriptors of {} values\nform: {}\ndescribed by: {}\nfile: {} "
-      "bytes{}, {} thumbnails take {} of them\n\n"
+      "{} of {}, descriptors of {}\nform: {}\ndescribed by: {}\nfile: {}{}, {} of them for {}\n\n"
       "      places      frames      visits  session\n",
-      places_of(sessions), form.place_bytes, form.descriptor_size, form.form, form.describer, bytes,
-      log > 0 ? " with its log" : "", thumbnails.count, thumbnails.bytes);
+      counted(places_of(sessions), "place"), counted(form.place_bytes, "byte"),
+      counted(form.descriptor_size, "value"), form.form, form.describer, counted(bytes, "byte"),
+      log > 0 ? " with its log" : "", thumbnails.bytes, counted(thumbnails.count, "thumbnail"));
   for (const sqlite::SessionFacts& facts : sessions) {
     text += fmt::format("{:>12}{:>12}{:>12}  {}\n", facts.places, facts.frames, visits[facts.id],
                         printable(facts.name));
@@ -113,8 +114,9 @@ void recover(const MapSettings& settings) {
   const sqlite::Recovered found = sqlite::recover(settings.words[1], out.partial());
   out.commit();
   for (const std::string& lost : found.lost) say("{}: lost: {}", settings.words[1], lost);
-  say("{}: {} places in {} sessions, {} links, {} thumbnails", settings.words[2], found.places,
-      found.sessions, found.links, found.thumbnails);
+  say("{}: {} in {}, {}, {}", settings.words[2], counted(found.places, "place"),
+      counted(found.sessions, "session"), counted(found.links, "link"),
+      counted(found.thumbnails, "thumbnail"));
 }
 
 void merge(const MapSettings& settings) {
@@ -189,8 +191,7 @@ void work_on_map(const MapSettings& settings, Faults faults) {
   }
   const std::size_t given = words.size() - 1;
   if (given < asked->least || given > asked->most) {
-    faults.push_back({"map " + asked->name,
-                      fmt::format("{} name{} after it", given, given == 1 ? "" : "s"),
+    faults.push_back({"map " + asked->name, counted(given, "name") + " after it",
                       "seqloop map " + asked->usage});
   }
   if (settings.out.empty() == asked->out) {

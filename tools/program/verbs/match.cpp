@@ -18,6 +18,7 @@
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/files/descriptor_source.hpp"
 #include "seqloop/files/npy_file.hpp"
@@ -135,8 +136,8 @@ void match(const MatchSettings& settings, Faults faults) {
   });
   tell_blank(settings.query, matched.blank_frames, query->rows);
   if (written) {
-    say("{} of {} frames answered, {} of them accepted, in {}", matched.frames.size(), query->rows,
-        matched.accepted(), settings.out.string());
+    say("{} of {} answered, {} of them accepted, in {}", matched.frames.size(),
+        counted(query->rows, "frame"), matched.accepted(), settings.out.string());
   }
   if (lasting) say("{}: {}", settings.map.file.string(), lasting->summary());
   if (unsaved) attempt.fail("not all of the drive is saved: " + *unsaved);

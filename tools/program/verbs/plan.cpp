@@ -11,6 +11,7 @@
 #include "program/fleet/through_own.hpp"
 #include "program/options/matcher_settings.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/detector.hpp"
 
@@ -80,8 +81,8 @@ void plan(const PlanSettings& settings, Faults faults) {
   const std::vector<BufferSize> detector = Detector::plan(config, capacity);
   std::optional<OthersPlan> others;
   if (settings.fleet_places > 0) others = plan_others(settings, config, capacity);
-  fmt::print("{}, ds {}, {} places of {} values, {}\n\n", settings.matcher.method,
-             config.sequence_length, capacity.places, capacity.descriptor_size,
+  fmt::print("{}, ds {}, {} of {}, {}\n\n", settings.matcher.method, config.sequence_length,
+             counted(capacity.places, "place"), counted(capacity.descriptor_size, "value"),
              settings.close_loops ? "closing loops" : "localising");
   fmt::print("           bytes  buffer\n");
   print_buffers("map", map);

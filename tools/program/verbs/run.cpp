@@ -28,6 +28,7 @@
 #include "program/run/trouble_log.hpp"
 #include "program/watch/ros_answers.hpp"
 #include "program/watch/serving.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/linux/real_time.hpp"
 #include "seqloop/linux/steady_clock.hpp"
@@ -278,7 +279,8 @@ void run(const RunSettings& settings, Faults faults) {
     say("fleet '{}': {}", settings.fleet.name, told);
   }
   if (const std::uint64_t unsent = ros ? ros->end() : 0; unsent > 0) {
-    say("{} messages to ROS 2 were dropped: subscribers, or this machine, were too slow", unsent);
+    say("dropped of what was to go to ROS 2: {}; subscribers, or this machine, were too slow",
+        counted(unsent, "message"));
   }
   if (lines_whole) {
     attempt([&] { setup.out->commit(); });

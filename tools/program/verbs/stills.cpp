@@ -12,6 +12,7 @@
 #include "program/process/progress.hpp"
 #include "program/process/say.hpp"
 #include "program/verbs/all_verbs.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/opencv/file_codecs.hpp"
 
 namespace seqloop::program {
@@ -148,8 +149,8 @@ void take_stills(const StillsVerbSettings& settings, Faults faults) {
   }
   out.write("stills.csv", table);
   out.commit();
-  say("{} stills in {}", taken, settings.out.string());
-  if (unreadable > 0) say("{} unreadable frames are empty files", unreadable);
+  say("{} in {}", counted(taken, "still"), settings.out.string());
+  if (unreadable > 0) say("empty files: {}", counted(unreadable, "unreadable frame"));
 }
 
 }  // namespace

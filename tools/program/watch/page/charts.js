@@ -134,7 +134,7 @@ function drawPlaces(canvas, answers, ownPlaces, picked, marks, sessions, places)
     context.arc(dot.left, dot.top, 7, 0, 7);
     context.stroke();
   }
-  canvas.setAttribute('aria-label', `Places over frames: ${matches.length} matches in ${last} frames` +
+  canvas.setAttribute('aria-label', `Places over frames: ${counted(matches.length, 'match', 'es')} in ${counted(last, 'frame')}` +
     (bands.length ? '; sessions ' + bands.map(({name}) => name).join(', ') : ''));
   return dots;
 }

@@ -112,7 +112,7 @@ async function showLoops(count) {
   list.count = count;
   const pages = Math.max(1, Math.ceil(count / LOOPS_A_PAGE));
   list.page = Math.min(list.page, pages - 1);
-  show('loops-text', count === 0 ? 'None yet.' : `${number(count)} accepted matches, the newest first.`);
+  show('loops-text', count === 0 ? 'None yet.' : `${counted(count, 'accepted match', 'es')}, the newest first.`);
   show('loops-page', `page ${number(list.page + 1)} of ${number(pages)}`);
   byId('newer').disabled = list.page === 0;
   byId('older').disabled = list.page === pages - 1;

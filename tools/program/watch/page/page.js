@@ -87,7 +87,7 @@ function showStatus(status) {
   const room = run.places ? ' of ' + number(run.places) : '';
   const terms = [['places', report ? (run.places ? 'room for ' + number(run.places) : '–') : number(map.places) + room],
     ...(map.saved === undefined ? [] : [['saved', `up to frame ${number(map.saved)}`], ['sessions', sessionNames(run.sessions)]]),
-    ...(status.fleet ? [['fleet', `${number(status.fleet.places)} places of other robots, ${number(status.fleet.loops)} loops with them`]] : []),
+    ...(status.fleet ? [['fleet', `${counted(status.fleet.places, 'place')} of other robots, ${counted(status.fleet.loops, 'loop')} with them`]] : []),
     ['candidates', frame ? number(frame.candidates) : '–'], ['distances', frame ? number(frame.distances) : '–'],
     ['k', frame ? number(frame.k) : '–'], ['full_search', yes(frame && frame.full_search)],
     ['map_full', yes(frame && frame.map_full)],

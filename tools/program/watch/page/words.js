@@ -60,6 +60,8 @@ const HELP = {
 };
 
 const number = (value) => value === null || value === undefined ? '–' : value.toLocaleString('en');
+/// `1 frame`, `2 frames`. `more` is what several of them end with.
+const counted = (value, thing, more = 's') => `${number(value)} ${thing}${value === 1 ? '' : more}`;
 const percent = (value) => value === null || value === undefined ? '–' : (100 * value).toFixed(1) + ' %';
 const bytes = (value) => value ? (value < 1e6 ? (value / 1e3).toFixed(0) + ' kB' : (value / 1e6).toFixed(1) + ' MB') : '–';
 const milliseconds = (value) => value === undefined || value === null ? '–' : value.toFixed(value < 10 ? 2 : 1);
