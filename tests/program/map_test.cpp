@@ -20,7 +20,8 @@ class MapVerb : public test::Program {
     MapFile map = MapFile::open(file(name), test::sample_form());
     for (const char* session : {"monday", "tuesday"}) {
       const std::int64_t id = map.begin_session(session, 1'700'000'000'000'000'000, "k = 10");
-      for (std::uint64_t i = 0; i < 4; ++i) test::save_sample(map, id, i * 11, places);
+      for (std::uint64_t i = 0; i < 4; ++i)
+        test::save_sample(map, id, i * 11, places, {}, std::nullopt, true);
     }
   }
 
@@ -42,7 +43,8 @@ class MapVerb : public test::Program {
   void damage(const std::string& name, std::uint64_t place, std::size_t size = 200) const {
     std::string bytes = test::read_all(file(name));
     const std::vector<std::byte> whole = test::sample_place(place, size);
-    const auto at = bytes.find({reinterpret_cast<const char*>(whole.data()), whole.size()});
+    // A thumbnail's start is a JPEG file's.
+    const auto at = bytes.find({reinterpret_cast<const char*>(whole.data()) + 3, whole.size() - 3});
     ASSERT_NE(at, std::string::npos);
     bytes[at] = static_cast<char>(bytes[at] ^ 1);
     folder_.write(name, bytes);
@@ -181,6 +183,12 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   const auto both = expect_refused("import folder --out b", "map.json: is no JSON object");
   EXPECT_NE(both.err.find("b: there is such a file already"), std::string::npos) << both.err;
   folder_.write("folder/map.json", json);
+  const std::string picture = test::read_all(file("folder/thumbnail-10.jpg"));
+  for (const std::string wrong : {"", "\xFF\xD8", "<html>no picture</html>"}) {
+    folder_.write("folder/thumbnail-10.jpg", wrong);
+    expect_refused("import folder --out c", "folder/thumbnail-10.jpg: is no JPEG picture; replace");
+  }
+  folder_.write("folder/thumbnail-10.jpg", picture);
   fs::resize_file(file("folder/session-2.npy"), 5000);
   expect_refused("import folder --out c", "session-2.npy: its numbers are not");
   fs::remove(file("folder/places.csv"));

@@ -2,6 +2,7 @@
 #include "sqlite/sample_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "seqloop/fault.hpp"
@@ -24,7 +25,8 @@ std::vector<std::byte> sample_place(std::uint64_t number, std::size_t bytes) {
 }
 
 void save_sample(MapFile& map, std::int64_t session, std::uint64_t frames, std::size_t places,
-                 std::vector<std::uint64_t> removed, std::optional<std::uint64_t> first) {
+                 std::vector<std::uint64_t> removed, std::optional<std::uint64_t> first,
+                 bool jpeg) {
   std::vector<PlaceRecord> records;
   std::vector<std::byte> bytes;
   std::vector<SavedThumbnail> pictures;
@@ -39,6 +41,8 @@ void save_sample(MapFile& map, std::int64_t session, std::uint64_t frames, std::
   }
   if (places > 0) {
     pictures.push_back({next, sample_place(next, 700)});
+    constexpr std::array start{std::byte{0xFF}, std::byte{0xD8}, std::byte{0xFF}};
+    if (jpeg) std::ranges::copy(start, pictures.back().jpeg.begin());
     links.push_back({session, frames, next, next / 2, .5 + static_cast<double>(next % 50) / 100});
   }
   links.push_back({session, frames + places, std::nullopt, next / 3, .999});

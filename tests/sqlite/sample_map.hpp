@@ -18,10 +18,10 @@ namespace seqloop::test {
 
 /// Saves places, with links, a thumbnail and statistics that follow from the numbers.
 /// @param frames the session has so far @param removed places that go at the same time
-/// @param first number; nothing: the next
+/// @param first number; nothing: the next @param jpeg the thumbnail begins as a JPEG file does
 void save_sample(sqlite::MapFile& map, std::int64_t session, std::uint64_t frames,
                  std::size_t places, std::vector<std::uint64_t> removed = {},
-                 std::optional<std::uint64_t> first = std::nullopt);
+                 std::optional<std::uint64_t> first = std::nullopt, bool jpeg = false);
 
 /// All that a map holds, as text; two maps that say the same are the same. `check` must find
 /// nothing wrong. @param fault told what is wrong, else

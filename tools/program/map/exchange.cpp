@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <map>
@@ -114,15 +116,26 @@ void check_cells(const fs::path& file, const std::vector<std::vector<std::string
 }
 
 std::vector<std::byte> bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
+  const std::uintmax_t size = fs::file_size(file, error);  // of a pipe, an error
+  std::ifstream stream;
+  if (!error) stream.open(file, std::ios::binary);
   std::vector<std::byte> bytes(error ? 0 : static_cast<std::size_t>(size));
   if (error || !stream.read(reinterpret_cast<char*>(bytes.data()),
                             static_cast<std::streamsize>(bytes.size()))) {
     throw SetupError({file.string(), "cannot be read", exported});
   }
   return bytes;
+}
+
+/// A place's picture, which others show as they are told.
+std::vector<std::byte> jpeg_in(const fs::path& file) {
+  constexpr std::array start{std::byte{0xFF}, std::byte{0xD8}, std::byte{0xFF}};
+  std::vector<std::byte> jpeg = bytes_of(file);
+  if (std::ranges::mismatch(start, jpeg).in1 != start.end()) {
+    throw SetupError({file.string(), "is no JPEG picture", "replace it, or remove it"});
+  }
+  return jpeg;
 }
 
 /// The bytes of a session's places.
@@ -166,7 +179,7 @@ std::map<std::int64_t, Part> parts_of(const fs::path& folder) {
     part.records.push_back({number, number_in<std::uint64_t>(places, i, rows[i][2]),
                             number_in<std::int64_t>(places, i, rows[i][3])});
     const fs::path picture = folder / fmt::format("thumbnail-{}.jpg", number);
-    if (fs::exists(picture)) part.thumbnails.push_back({number, bytes_of(picture)});
+    if (fs::exists(picture)) part.thumbnails.push_back({number, jpeg_in(picture)});
   }
   const Part* before = nullptr;
   for (const auto& [session, part] : parts) {
