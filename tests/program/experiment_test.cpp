@@ -385,6 +385,40 @@ values = "recal"
        "'fps' must be between", "'dss' is no setting", "has 4 twice", "grey levels"});
 }
 
+TEST_F(Experiments, FaultsNameTheFileAndItsKeysAndNoFlags) {
+  write_experiment(std::string("threshold-on = \"recall\"\n") + drives + std::string(pair) + R"(
+radius = 3
+[[descriptor]]
+name = "words"
+descriptor = "words"
+topic = "/camera"
+[[method]]
+name = "m"
+method = "o-seqcnnslam"
+descriptor = "gradients"
+max-uniqueness = 0.9
+[[method]]
+name = "p"
+method = "a-seqcnnslam"
+descriptor = "words"
+paper = true
+patience = 3
+[[method]]
+name = "none"
+descriptor = "gradients"
+)");
+  const test::Outcome outcome = run("eval --experiment e.toml --jobs 1");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* words :
+       {"out: not given; --out FOLDER\n", "e.toml:1: 'threshold-on': 'recall' is none of",
+        "; 'min-probability', or 'decide-by' uniqueness\n", "under 'paper', and no frame waits; ",
+        "'method' seqslam, ", "'reference-positions' R.csv 'query-positions' Q.csv",
+        "training: not given; 'training' DRIVE",
+        "'topic' chooses nothing in an experiment; give"}) {
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
+  }
+}
+
 TEST_F(Experiments, RefuseDrivesThatAreTooShortOrDoNotBelongTogether) {
   const std::string method =
       "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\n"

@@ -74,7 +74,8 @@ class Reader {
     try {
       experiment_.threshold_on = program::parse_threshold(threshold);
     } catch (const std::invalid_argument& why) {
-      faults_.push_back({"threshold-on", why.what()});
+      faults_.push_back({program::where(file_, *root.get("threshold-on")),
+                         std::string("'threshold-on': ") + why.what()});
     }
     const std::filesystem::path file(file_);
     if (data_.empty()) data_ = file.parent_path() / data;

@@ -20,6 +20,7 @@
 #include "experiment/run/summary.hpp"
 #include "files/text_file.hpp"
 #include "program/drives/drive_length.hpp"
+#include "program/options/flag_names.hpp"
 #include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
@@ -384,10 +385,12 @@ void tell_what_is_empty(const Report& report) {
 
 void run_experiment(const std::filesystem::path& file, const std::filesystem::path& data,
                     const std::filesystem::path& folder, std::size_t threads, Faults faults) {
-  const Experiment experiment = read_experiment(file, data, faults);
+  Faults of_file;
+  const Experiment experiment = read_experiment(file, data, of_file);
   opencv::use_threads(1);  // a job a core
   Runner runner(experiment, folder);
-  runner.check(faults);
+  runner.check(of_file);
+  for (Fault& fault : of_file) faults.push_back(program::in_keys(std::move(fault)));
   program::refuse(std::move(faults));
   runner.run(threads);
   const Report report = runner.report();

@@ -63,7 +63,7 @@ void check(const DriveSettings& settings, bool training_given, Faults& faults) {
                       "take gradients or a model"});
   }
   if ((removes(settings) || kind == "words") && !training_given) {
-    faults.push_back({"training", "not given", "--training DRIVE, or several with commas between"});
+    faults.push_back({"training", "not given", "--training DRIVE, or several"});
   }
   if (!settings.training.empty() && kind != "words" && !settings.remove_components) {
     faults.push_back(

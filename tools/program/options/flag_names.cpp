@@ -56,4 +56,22 @@ Fault in_flags(Fault fault) {
   return fault;
 }
 
+Fault in_keys(Fault fault) {
+  const auto is_name = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+  };
+  for (std::string* const text : {&fault.why, &fault.remedy}) {
+    for (std::size_t at = 0; (at = text->find("--", at)) != std::string::npos;) {
+      // Names of files may hold dashes, too.
+      const bool begins = at == 0 || (*text)[at - 1] == ' ';
+      std::size_t end = at + 2;
+      while (end < text->size() && is_name((*text)[end])) ++end;
+      if (begins && end > at + 2)
+        text->replace(at, end - at, "'" + text->substr(at + 2, end - at - 2) + "'");
+      at = end;
+    }
+  }
+  return fault;
+}
+
 }  // namespace seqloop::program
