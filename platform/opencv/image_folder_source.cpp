@@ -39,14 +39,15 @@ bool is_one_of(const fs::path& path, std::span<const std::string_view> endings) 
   return std::find(endings.begin(), endings.end(), extension) != endings.end();
 }
 
-/// A dangling link to a picture stays in the drive, as an unreadable frame: the numbers of the
-/// frames behind it do not move.
+/// A dangling link to a picture, and one that must not be looked at, stay in the drive, as
+/// unreadable frames: the numbers of the frames behind them do not move.
 bool is_picture(const fs::directory_entry& entry) {
   if (entry.path().filename().string().starts_with('.') || !has_image_extension(entry.path()))
     return false;
   std::error_code error;
   const fs::file_type type = entry.status(error).type();
-  return type == fs::file_type::regular || type == fs::file_type::not_found;
+  return type == fs::file_type::regular || type == fs::file_type::not_found ||
+         type == fs::file_type::none;
 }
 
 /// The first few of these names.

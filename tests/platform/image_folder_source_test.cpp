@@ -123,6 +123,16 @@ TEST(ImageFolderSource, ScalesPgmAndPpmToTheirWhite) {
   }
 }
 
+TEST(ImageFolderSource, APictureThatCannotBeLookedAtKeepsItsNumber) {
+  const TemporaryFolder folder;
+  folder.write("2.png", encoded(textured(8, 8), ".png"));
+  std::filesystem::create_symlink("1.png", folder.path() / "1.png");  // round and round
+  ImageFolderSource source(folder.path(), false);
+  EXPECT_TRUE(source.notes().empty());
+  EXPECT_TRUE(says(next(source).fault, "1.png: the file is not there or cannot be read"));
+  EXPECT_EQ(next(source).frame.index, 1U);
+}
+
 TEST(ImageFolderSource, NotesWhatIsLeftOutAndSizesThatDiffer) {
   const TemporaryFolder folder;
   folder.write("1.png", encoded(textured(8, 8), ".png"));
