@@ -547,6 +547,34 @@ TEST_F(BadInput, AReferenceOfMorePlacesThanAreLookedThrough) {
   EXPECT_EQ(shorter.err.find(told), std::string::npos);
 }
 
+TEST_F(BadInput, AnOutputBecomesNoPartOfTheDrive) {
+  std::filesystem::create_directories(file("drive/more"));
+  for (const std::string name : {"0.jpg", "0.PNG", "loops.mcap", "m.db3"}) {
+    expect_refused(
+        "run --source drive --out drive/" + name,
+        {"out: drive/" + name + " would be read as a part of drive the next time (source)"});
+    const test::Outcome outcome = run("run --source drive --out drive/more/" + name);
+    EXPECT_EQ(outcome.err.find("would be read"), std::string::npos) << outcome.err;
+  }
+  const test::Outcome table = run("run --source drive --out drive/answers.jsonl");
+  EXPECT_EQ(table.err.find("would be read"), std::string::npos) << table.err;
+}
+
+TEST_F(BadInput, OutputsThatCannotBeLookedUpAreNotOne) {
+  std::filesystem::create_symlink("loop", file("loop"));
+  const test::Outcome outcome =
+      run("run --source good.npy --out loop/a --summary loop/b --pictures loop");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.err.find("is the same file"), std::string::npos) << outcome.err;
+}
+
+TEST_F(BadInput, WordsThatAreNearlyRight) {
+  std::filesystem::create_directory(file("day"));
+  expect_refused("run day", {"day: stands after no flag; say what it is, as in --source"});
+  expect_refused("match --query good.npy --out m.csv --method O-SeqCNNSLAM",
+                 {"method: 'O-SeqCNNSLAM' is no known method; did you mean 'o-seqcnnslam'?"});
+}
+
 TEST_F(BadInput, DrivesWithoutAnyByte) {
   // Read, the kernel's log keeps its reader waiting, and no signal ends that.
   std::filesystem::create_symlink("/proc/kmsg", file("log.avi"));

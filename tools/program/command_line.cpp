@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
@@ -145,7 +146,8 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
     }
     const std::string name = extra.substr(std::min(extra.find_first_not_of('-'), extra.size()));
     const std::string meant = nearest(name.substr(0, name.find('=')), own_names);
-    if (!flag && meant.empty()) {
+    std::error_code error;
+    if (!flag && (meant.empty() || std::filesystem::exists(extra, error))) {
       faults.push_back({extra, "stands after no flag", "say what it is, as in --source; " + help});
     } else {
       faults.push_back({extra, "not known to '" + verb.name + "'",

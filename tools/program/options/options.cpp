@@ -181,7 +181,12 @@ Faults OptionTable::set(const Option& option, std::string_view value) {
   return {};
 }
 
-std::string nearest(std::string_view name, const std::vector<std::string>& known) {
+std::string nearest(std::string_view written, const std::vector<std::string>& known) {
+  // All that is known is small.
+  std::string name(written);
+  std::ranges::transform(name, name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   constexpr std::size_t most_edits = 3;
   std::string best;
   std::size_t fewest = std::min(most_edits, name.size() / 3 + 1) + 1;

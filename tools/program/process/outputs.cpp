@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "seqloop/bags/bag.hpp"
+#include "seqloop/opencv/image_folder_source.hpp"
+
 namespace seqloop::program {
 namespace {
 
@@ -19,6 +22,8 @@ struct Target {
     std::error_code error;
     const bool standard_output = path == "-" || path == "/dev/stdout";
     name = standard_output ? "/dev/stdout" : fs::weakly_canonical(fs::absolute(path, error), error);
+    // What cannot be looked up is told apart as it is written.
+    if (error) name = fs::absolute(path, error).lexically_normal();
     if (!name.has_filename()) name = name.parent_path();
     struct stat found {};
     const bool there =
@@ -72,7 +77,15 @@ std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
                              output.path.string(), other.flag),
                  "choose another folder"};
   }
-  if (!same(target, there) && !lies_in(target, other.path)) return std::nullopt;
+  if (!same(target, there) && !lies_in(target, other.path)) {
+    const bool in_drive = there.is_folder() && target.name.parent_path() == there.name;
+    if (!in_drive || !(opencv::has_image_extension(output.path) || bags::is_bag(output.path)))
+      return std::nullopt;
+    return Fault{output.flag,
+                 fmt::format("{} would be read as a part of {} the next time ({})",
+                             output.path.string(), other.path.string(), other.flag),
+                 "choose another name"};
+  }
   return Fault{
       output.flag,
       fmt::format("writing {} would destroy an input ({})", output.path.string(), other.flag),

@@ -25,8 +25,8 @@ struct FileUse {
 };
 
 /// Adds a fault for every output that is an input, too, or another output: whatever the spelling,
-/// through links of both kinds. In a folder that is read nothing may be replaced, and it may not be
-/// filled.
+/// through links of both kinds. In a folder that is read nothing may be replaced, it may not be
+/// filled, and nothing may come there that would be a part of the drive.
 void refuse_overwriting(Faults& faults, const std::vector<FileUse>& uses);
 
 /// Adds a fault when a folder is not there and cannot be made.
