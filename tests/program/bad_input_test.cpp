@@ -568,6 +568,25 @@ TEST_F(BadInput, OutputsThatCannotBeLookedUpAreNotOne) {
   EXPECT_EQ(outcome.err.find("is the same file"), std::string::npos) << outcome.err;
 }
 
+TEST_F(BadInput, PipesThatNobodyReadsEndWithTheFirstSignal) {
+  folder_.write("stop.sh",
+                "mkfifo s b\n"
+                "env --default-signal=INT,TERM \"$@\" &\n"
+                "until ls -d .r.partial-* >/dev/null 2>&1; do sleep 0.01; done\n"
+                "sleep 0.5\n"
+                "kill -TERM $!\n"
+                "for i in 1 2 3 4 5 6 7 8 9; do kill -0 $! 2>/dev/null && sleep $i; done\n"
+                "kill -KILL $! 2>/dev/null\n"
+                "wait $!\n");
+  const std::string command =
+      "cd '" + folder_.path().string() +
+      "' && sh stop.sh '" SEQLOOP_BINARY
+      "' run --source good.npy --out r --summary s --out-bag b 2>stderr.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_EQ(test::read_all(file("stderr.txt")), "seqloop: interrupted: nothing has been written\n");
+  EXPECT_EQ(listing().find("partial"), std::string::npos) << listing();
+}
+
 TEST_F(BadInput, WordsThatAreNearlyRight) {
   std::filesystem::create_directory(file("day"));
   expect_refused("run day", {"day: stands after no flag; say what it is, as in --source"});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program/options/options.hpp"
+#include "program/process/interruption.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::program {
@@ -26,7 +27,8 @@ struct Verb {
 };
 
 /// Runs one part of a set-up and keeps its faults, so that the other parts are looked at too. What
-/// several parts find is told once.
+/// several parts find is told once. Where the program is asked to stop the set-up ends: the part
+/// may have waited, as for who reads a pipe, and the next one would, too.
 template <class Part>
 void collect(Faults& faults, Part part) {
   try {
@@ -37,6 +39,7 @@ void collect(Faults& faults, Part part) {
       if (std::ranges::none_of(faults, same)) faults.push_back(found);
     }
   }
+  stop_if_interrupted();
 }
 
 /// Refuses a set-up that has faults.
