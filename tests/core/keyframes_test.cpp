@@ -57,7 +57,7 @@ class NaiveKeyframes {
     if (changed) {
       apart_.take(static_cast<double>(std::min<std::uint64_t>(since_change_, 4)));
       since_change_ = 0;
-      if (apart_.mean() > (++changes_ <= 40 ? 1.8 : 2.2)) dense_ = true;
+      dense_ = ++changes_ <= 40 ? apart_.mean() > 1.8 : dense_ || apart_.mean() > 2.2;
       last_change_ = descriptor;
     }
     if (was_dense ? !changed : differs <= 0.15 * new_.mean() * unrelated) return false;

@@ -674,7 +674,7 @@ panel = "pair"
   // What is right is another thing for each of them.
   const std::string page = test::read_all(file("out/index.html"));
   for (const char* words : {"<dt>there and again</dt><dd>first, then second, closing loops; truth: "
-                            "identity, within 1 frames</dd>",
+                            "identity, within 1 frame</dd>",
                             "<dd>first, closing loops; every answer is wrong</dd>",
                             "truth: t.csv, within 2 frames, or a row's own tolerance; frames "
                             "that it does not list are not judged",

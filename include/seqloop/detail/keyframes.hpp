@@ -105,8 +105,10 @@ class Keyframes {
     const double apart = usually_apart_.mean();
     if (has_map_) {
       is_dense_ = apart > dense_with_map;
-    } else if (!is_dense_) {
-      is_dense_ = apart > (changes_ <= first_changes ? dense_at_first : dense_later);
+    } else if (changes_ <= first_changes) {
+      is_dense_ = apart > dense_at_first;
+    } else {
+      is_dense_ = is_dense_ || apart > dense_later;
     }
   }
 
