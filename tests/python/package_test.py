@@ -562,13 +562,15 @@ class SameAsTheProgram(unittest.TestCase):
     def test_measures_by_positions(self) -> None:
         out, places, driven = (self.work / name for name in ("matches.csv", "places.csv", "driven.csv"))
         out.write_text(as_csv(matches := seqloop.match(self.reference, self.query)))
-        for file in (places, driven):
-            file.write_text("frame,x,y\n" + "".join(f"{frame},{2 * frame},0\n" for frame in range(120)))
+        for file, drive in ((places, "reference"), (driven, "query")):
+            with open(self.work / "street" / f"{drive}.csv", newline="") as rows:
+                way = [row["street_m"] for row in csv.DictReader(rows)]
+            file.write_text("frame,x,y\n" + "".join(f"{frame},{metres},0\n" for frame, metres in enumerate(way)))
         measures = seqloop.evaluate(matches, reference_positions=places, query_positions=str(driven), radius=5)
         said = json.loads(program("eval", "--matches", out, "--json", "--reference-positions", places,
                                   "--query-positions", driven, "--radius", 5).stdout)
         self.assertEqual((measures.frames, measures.correct), (said["frames"], said["correct"]))
-        self.assertGreater(measures.correct, 50)
+        self.assertGreater(measures.correct, 100)
         for truth in ("identity", [[1, 1]]):
             with self.assertRaisesRegex(seqloop.SetupError, "truth: positions are given too"):
                 seqloop.evaluate(matches, truth, reference_positions=places, query_positions=driven)
