@@ -335,11 +335,13 @@ TEST(PlaceBeliefOracle, OnAKnownWay) {
 
 TEST(PlaceBeliefOracle, AtHalfAndTwiceThePace) {
   // Without the ways on which rows are equal but for rounding: 2 to 4 of the first eight, more of
-  // them after jumps, where more rows are found.
+  // them after jumps, where more rows are found, and other ones with another processor's
+  // logarithms.
   for (const auto& [seed, kind, jumps] : {std::tuple{1U, Map::to_localise_in, 0.0},
                                           {5U, Map::to_localise_in, 0.0},
-                                          {9U, Map::to_localise_in, 0.02},
-                                          {10U, Map::to_localise_in, 0.02},
+                                          {19U, Map::to_localise_in, 0.02},
+                                          {20U, Map::to_localise_in, 0.02},
+                                          {22U, Map::to_localise_in, 0.02},
                                           {5U, Map::to_localise_in, 0.3},
                                           {1U, Map::of_earlier_drives, 0.0},
                                           {5U, Map::of_earlier_drives, 0.0},
