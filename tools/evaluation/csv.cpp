@@ -9,6 +9,7 @@
 
 #include "evaluation/line_faults.hpp"
 #include "files/text_file.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
@@ -83,8 +84,8 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
     try {
       std::vector<std::string> found = cells(line, where);
       if (found.size() != header_.size()) {
-        throw SetupError({where, fmt::format("{} cell{} under a header of {}", found.size(),
-                                             found.size() == 1 ? "" : "s", header_.size())});
+        throw SetupError({where, fmt::format("{} under a header of {}",
+                                             counted(found.size(), "cell"), header_.size())});
       }
       lines_.back() = std::move(found);
     } catch (const SetupError& error) {

@@ -7,6 +7,7 @@
 
 #include "program/drives/camera_decoder.hpp"
 #include "program/drives/warm_up.hpp"
+#include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "seqloop/linux/camera.hpp"
 
@@ -22,11 +23,9 @@ bool is_camera(const std::filesystem::path& path) {
 void check_camera(const CameraSettings& settings, const std::filesystem::path& source,
                   Faults& faults) {
   if (is_camera(source)) return;
-  for (const auto& [flag, given] :
-       {std::pair{"format", settings.format.has_value()}, {"size", settings.size.has_value()}}) {
-    if (given)
-      faults.push_back({flag, "it goes with a camera, and the source is none", "leave it out"});
-  }
+  refuse_given(faults,
+               {{"format", settings.format.has_value()}, {"size", settings.size.has_value()}},
+               "it goes with a camera, and the source is none");
 }
 
 LiveCamera open_camera(const std::filesystem::path& path, const CameraSettings& settings,

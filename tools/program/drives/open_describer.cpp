@@ -137,16 +137,15 @@ void suit_descriptor(DriveSettings& settings, Difference difference, Faults& fau
 }
 
 void refuse_describing(const DriveSettings& settings, const std::string& why, Faults& faults) {
-  std::vector<std::string> given = settings.model_flags_given;
-  for (const auto& [flag, is_given] :
-       {std::pair{"descriptor", !settings.descriptor.empty()},
-        {"model", !settings.model.model.empty()},
-        {"training", !settings.training.empty()},
-        {"words", settings.words.has_value()},
-        {"remove-components", settings.remove_components.has_value()}}) {
-    if (is_given) given.emplace_back(flag);
-  }
-  for (const std::string& flag : given) faults.push_back({flag, why, "leave it out"});
+  for (const std::string& flag : settings.model_flags_given)
+    faults.push_back({flag, why, "leave it out"});
+  refuse_given(faults,
+               {{"descriptor", !settings.descriptor.empty()},
+                {"model", !settings.model.model.empty()},
+                {"training", !settings.training.empty()},
+                {"words", settings.words.has_value()},
+                {"remove-components", settings.remove_components.has_value()}},
+               why);
 }
 
 void check_describer(const DriveSettings& settings, bool training_given) {

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "program/options/verb.hpp"
 #include "program/process/utf8.hpp"
 
 namespace seqloop::program {
@@ -42,13 +43,13 @@ void add_thumbnail_option(OptionTable& options, MapSettings& settings) {
 void check(const MapSettings& settings, bool reference, Faults& faults) {
   if (settings.file.empty()) {
     const MapSettings usual;
-    for (const auto& [flag, given] : {std::pair{"read-only", settings.read_only},
-                                      {"session", !settings.session.empty()},
-                                      {"grow", settings.novel != usual.novel},
-                                      {"save-every-s", settings.save_every_s != usual.save_every_s},
-                                      {"thumbnails", settings.thumbnails != usual.thumbnails}}) {
-      if (given) faults.push_back({flag, "there is no map", "--map FILE"});
-    }
+    refuse_given(faults,
+                 {{"read-only", settings.read_only},
+                  {"session", !settings.session.empty()},
+                  {"grow", settings.novel != usual.novel},
+                  {"save-every-s", settings.save_every_s != usual.save_every_s},
+                  {"thumbnails", settings.thumbnails != usual.thumbnails}},
+                 "there is no map", "--map FILE");
     return;
   }
   // It is opened once the form of the drive's places is known.

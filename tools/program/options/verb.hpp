@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,15 @@ void collect(Faults& faults, Part part) {
     }
   }
   stop_if_interrupted();
+}
+
+/// Adds a fault for each flag that is given where it does nothing. @param flags with whether they
+/// are
+inline void refuse_given(Faults& faults, std::initializer_list<std::pair<const char*, bool>> flags,
+                         const std::string& why, const std::string& remedy = "leave it out") {
+  for (const auto& [flag, given] : flags) {
+    if (given) faults.push_back({flag, why, remedy});
+  }
 }
 
 /// Refuses a set-up that has faults.

@@ -103,11 +103,12 @@ void measure(const CameraVerbSettings& settings, std::size_t frames) {
 
 void look_at_cameras(const CameraVerbSettings& settings, Faults faults) {
   if (settings.frames == 0) faults.push_back({"frames", "0 is not above 0"});
-  for (const auto& [flag, given] : {std::pair{"format", settings.camera.format.has_value()},
-                                    {"size", settings.camera.size.has_value()},
-                                    {"fps", settings.fps != CameraVerbSettings{}.fps}}) {
-    if (given && !settings.frames)
-      faults.push_back({flag, "nothing is captured, cameras are listed", "--frames N"});
+  if (!settings.frames) {
+    refuse_given(faults,
+                 {{"format", settings.camera.format.has_value()},
+                  {"size", settings.camera.size.has_value()},
+                  {"fps", settings.fps != CameraVerbSettings{}.fps}},
+                 "nothing is captured, cameras are listed", "--frames N");
   }
   refuse(std::move(faults));
   if (settings.frames) {

@@ -136,11 +136,11 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
 /// What belongs to match lists only, and what to experiments only.
 void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, Faults faults) {
   if (settings.experiment.empty()) {
-    for (const auto& [flag, given] : {std::pair{"out", !settings.out.empty()},
-                                      {"data", !settings.data.empty()},
-                                      {"jobs", settings.jobs > 0}}) {
-      if (given) faults.push_back({flag, "it goes with an experiment", "--experiment E.toml"});
-    }
+    refuse_given(faults,
+                 {{"out", !settings.out.empty()},
+                  {"data", !settings.data.empty()},
+                  {"jobs", settings.jobs > 0}},
+                 "it goes with an experiment", "--experiment E.toml");
     eval_matches(settings, std::move(faults));
     return;
   }
@@ -149,13 +149,13 @@ void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, 
                            !settings.truth.reference_positions.empty() ||
                            !settings.truth.query_positions.empty() || settings.truth.radius_m ||
                            settings.truth.unlisted;
-  for (const auto& [flag, given] : {std::pair{"matches", !settings.matches.empty()},
-                                    {"truth, tolerance, positions, radius, unlisted", truth_given},
-                                    {"frames", settings.frames > 0},
-                                    {"threshold-on", settings.threshold_on.has_value()},
-                                    {"json", settings.json}}) {
-    if (given) faults.push_back({flag, "an experiment says it in its file", "leave it out here"});
-  }
+  refuse_given(faults,
+               {{"matches", !settings.matches.empty()},
+                {"truth, tolerance, positions, radius, unlisted", truth_given},
+                {"frames", settings.frames > 0},
+                {"threshold-on", settings.threshold_on.has_value()},
+                {"json", settings.json}},
+               "an experiment says it in its file", "leave it out here");
   if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   try {
