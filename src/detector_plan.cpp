@@ -7,15 +7,24 @@
 
 namespace seqloop {
 
-std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
+namespace {
+
+void refuse_faults(const MatcherConfig& config, const Capacity& capacity) {
   Faults faults = detector_faults(config, capacity);
   if (!faults.empty()) throw SetupError(std::move(faults));
+}
+
+}  // namespace
+
+std::vector<BufferSize> Detector::plan(const MatcherConfig& config, const Capacity& capacity) {
+  refuse_faults(config, capacity);
   std::vector<BufferSize> buffers;
   const Detector measured(Arena(buffers), config, nullptr, capacity, ArenaMemory());
   return buffers;
 }
 
 Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) {
+  refuse_faults(config, capacity);
   const std::size_t window = config.sequence_length + 1;
   const std::uint64_t lines =
       velocity_range(config.sequence_length, config.vmin, config.vmax).count();

@@ -49,7 +49,7 @@ class Detector {
     return total_bytes(plan(config, capacity));
   }
 
-  /// The most that one step can cost, but for what `take_in` leaves to it; of what `plan` takes.
+  /// The most that one step can cost, but for what `take_in` leaves to it. Errors: those of `plan`.
   [[nodiscard]] static Work most_work(const MatcherConfig& config, const Capacity& capacity);
 
   /// @param map lives longer than the detector. To localise: filled (and standardised, where the

@@ -540,6 +540,19 @@ TEST(Detector, ListsEveryFaultOfItsSetUp) {
   }
 }
 
+TEST(Detector, PlansNeitherMemoryNorWorkOfWhatItRefuses) {
+  MatcherConfig config = paper(Candidates::ranges, 5);
+  config.candidates = Candidates{77};
+  config.vmin = 2.0;
+  const Capacity capacity{0, 12};
+  const std::string memory =
+      test::setup_error([&] { static_cast<void>(Detector::plan(config, capacity)); });
+  for (const char* name : {"candidates: ", "vmin", "places: "})
+    EXPECT_TRUE(test::says(memory, name));
+  EXPECT_EQ(test::setup_error([&] { static_cast<void>(Detector::most_work(config, capacity)); }),
+            memory);
+}
+
 TEST(Detector, RefusesToBelieveByFewerRowsThanShowTheScene) {
   MatcherConfig config;
   PlaceMap map({}, {50, 3});
