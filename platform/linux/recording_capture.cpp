@@ -80,6 +80,11 @@ void RecordingCapture::read_ahead() noexcept {
     case Grab::frame:
       break;
   }
+  if (frame.image.format > PixelFormat::bgr8) {
+    ahead_->what = Capture::bad_frame;
+    ahead_->fault.assign({"the picture's format is none of its values: take gray8 or bgr8"});
+    return;
+  }
   try {
     keep(frame);
     ahead_->what = Capture::frame;

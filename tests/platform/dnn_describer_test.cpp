@@ -181,6 +181,9 @@ TEST(DnnDescriber, FailsWithoutTouchingTheDescriptor) {
   Image thin = image_of(good);
   thin.stride = 1;
   fails(thin, descriptor, "shorter than the picture is wide");
+  Image unknown = image_of(good);
+  unknown.format = PixelFormat{77};
+  fails(unknown, descriptor, "the picture's format is none of its values");
   expect_near(describe(describer, good), {0.5F, 0.5F, 0.5F, 0.5F});
   EXPECT_TRUE(describer.last_fault().empty());
 }

@@ -15,6 +15,7 @@
 
 #include "guarded_bytes.hpp"
 #include "platform/jpegs.hpp"
+#include "seqloop/turbojpeg/encode_jpeg.hpp"
 
 namespace seqloop::turbojpeg {
 namespace {
@@ -277,6 +278,12 @@ TEST(MjpgDecoder, NothingIsWrittenToTheTerminal) {
   EXPECT_NE(fault_of(jpeg, 64, 48), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(EncodeJpeg, MakesNothingOfAFormatThatIsNone) {
+  const Bytes pixels(12, 100);
+  EXPECT_FALSE(encode_jpeg({pixels.data(), 2, 2, 6, PixelFormat::bgr8}, 90).empty());
+  EXPECT_TRUE(encode_jpeg({pixels.data(), 2, 2, 6, PixelFormat{77}}, 90).empty());
 }
 
 TEST(MjpgDecoder, ASizeAgreedToAnewIsTaken) {

@@ -24,6 +24,8 @@ namespace seqloop::opencv {
 /// What is wrong with a picture; empty where nothing is.
 [[nodiscard]] inline std::string_view fault_of(const Image& image) noexcept {
   if (image.data == nullptr || image.width <= 0 || image.height <= 0) return "the picture is empty";
+  if (image.format > PixelFormat::bgr8)
+    return "the picture's format is none of its values: take gray8 or bgr8";
   const std::size_t bytes_a_pixel = image.format == PixelFormat::gray8 ? 1 : 3;
   if (image.stride < static_cast<std::size_t>(image.width) * bytes_a_pixel)
     return "the picture's rows are shorter than the picture is wide";

@@ -217,6 +217,16 @@ TEST(RecordingCapture, PicturesMayGrowShrinkAndTurnColoured) {
   }
 }
 
+TEST(RecordingCapture, APictureOfAFormatThatIsNoneIsABadFrame) {
+  std::vector<Recorded> frames = at_25_hz(2);
+  frames[0].format = PixelFormat{77};
+  Player player(std::move(frames));
+  const Captured bad = player.next();
+  EXPECT_EQ(bad.what, Capture::bad_frame);
+  EXPECT_EQ(bad.fault.view(), "the picture's format is none of its values: take gray8 or bgr8");
+  EXPECT_EQ(player.next().what, Capture::frame);
+}
+
 TEST(RecordingCapture, DescriptorsKeepTheirTimeToo) {
   std::vector<Recorded> frames = at_25_hz(3);
   for (std::size_t i = 0; i < frames.size(); ++i) {
