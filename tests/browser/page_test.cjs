@@ -4,6 +4,7 @@
 //   FILE will hold the page's address; FILE.wanted is made when the browser is there to look at it
 //   map: of a run with a map that lasts, whose first session is `<i>monday`
 //   twins: of a run whose places all look alike
+//   after: of a run that is ended by SIGTERM when the page has made FILE.again, and begun anew likewise
 //   again: of a run that is killed when the page has made FILE.again, and begun anew at its address with a drive that
 //   is called `later` and begins later
 const fs = require('node:fs');
@@ -86,6 +87,20 @@ async function comesBack(page, url, file, token) {
   await page.waitForSelector('#loops li.accepted');
 }
 
+/// A run that was asked to end, as a service's restart does, is followed by the next one at its address.
+async function followsTheNext(page, file) {
+  const wanted = {timeout: 120000};
+  await page.waitForFunction(() => view.status && view.status.counts.frames >= 10, null, wanted);
+  fs.writeFileSync(file + '.again', '');
+  await page.waitForFunction(() => byId('health').textContent === 'The run has ended.', null, wanted);
+  // It stays so, until there is another one.
+  await page.waitForTimeout(3000);
+  assert.strictEqual(await page.textContent('#health'), 'The run has ended.');
+  fs.writeFileSync(file + '.next', '');
+  await page.waitForFunction(() => view.status && view.status.run.source.endsWith('later') &&
+    view.status.counts.frames >= 10 && byId('health').textContent === 'running well', null, wanted);
+}
+
 async function stops(page, browser) {
   assert.deepStrictEqual(page.complaints(), []);
   page.on('dialog', (dialog) => dialog.accept());
@@ -110,6 +125,10 @@ async function main([path, file, token, mode, folder]) {
   assert.strictEqual(await page.evaluate(() => location.hash), '', 'the token is in no address any more');
   if (mode === 'twins') {
     await showsTwins(page, folder);
+    return stops(page, browser);
+  }
+  if (mode === 'after') {
+    await followsTheNext(page, file);
     return stops(page, browser);
   }
   if (mode === 'again') {

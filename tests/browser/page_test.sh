@@ -51,7 +51,7 @@ served() {
 looked_at() {
   local mode=$1
   shift
-  rm -f "$work/url" "$work/url.wanted" "$work/url.again"
+  rm -f "$work/url" "$work/url.wanted" "$work/url.again" "$work/url.next"
   NODE_PATH=$modules node "$source/tests/browser/page_test.cjs" "$browser" "$work/url" 0123456789abcdef "$mode" $pictures &
   look=$!
   # The browser first: on a busy machine it takes longer to start than the run lasts.
@@ -59,10 +59,16 @@ looked_at() {
   served "$work/street/<b>query" "$@"
   echo "$url" >"$work/url.new"
   mv "$work/url.new" "$work/url"
-  if [ "$mode" = again ]; then
+  if [ "$mode" = again ] || [ "$mode" = after ]; then
     until [ -e "$work/url.again" ] || ! kill -0 "$look" 2>/dev/null; do sleep 0.1; done
-    kill -KILL "$run"
-    wait "$run" || true
+    if [ "$mode" = again ]; then
+      kill -KILL "$run"
+      wait "$run" || true
+    else
+      kill -TERM "$run"
+      wait "$run" || true
+      until [ -e "$work/url.next" ] || ! kill -0 "$look" 2>/dev/null; do sleep 0.1; done
+    fi
     address=${url#http://} served "$work/later" "$@"
   fi
   wait "$look" || { cat "$work/said"; exit 1; }
@@ -72,6 +78,7 @@ looked_at() {
 looked_at twins --reference "$work/street/reference" --paper --ds 20 --max-uniqueness 0.1
 mkdir "$work/later"
 find "$work/street/<b>query" -name '*.jpg' | sort | tail -n +61 | xargs -d '\n' cp -t "$work/later"
+looked_at after --reference "$work/street/reference"
 looked_at again --reference "$work/street/reference"
 looked_at page --reference "$work/street/reference"
 "$seqloop" report "$work/run.jsonl" --summary "$work/run.json" --out "$work/report.html"

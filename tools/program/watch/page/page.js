@@ -201,11 +201,13 @@ function listen() {
       takeNews(news);
     }
     requestAnimationFrame(showAll);
-    if (news.status.state === 'ended') events.close();
   };
   events.onerror = () => {
-    byId('health').className = 'bad';
-    show('health', 'not connected: the run has ended, or the robot is out of reach');
+    // After the run's end the page asks on, for another run at its address.
+    if (!view.status || view.status.state !== 'ended') {
+      byId('health').className = 'bad';
+      show('health', 'not connected: the run has ended, or the robot is out of reach');
+    }
     // Refused, as where too many look, the browser does not ask again by itself.
     if (events.readyState === EventSource.CLOSED) setTimeout(listen, 2000);
   };
