@@ -56,6 +56,8 @@ class MjpgDecoder::Impl {
     return {};
   }
 
+  [[nodiscard]] bool is_of_another_size() const { return is_of_another_size_; }
+
  private:
   [[nodiscard]] int channels() const { return needs_.gray_is_enough ? 1 : 3; }
 
@@ -63,6 +65,7 @@ class MjpgDecoder::Impl {
   [[nodiscard]] bool check(const RawPicture& raw) {
     JpegHeader header;
     fault_.clear();
+    is_of_another_size_ = false;
     if (raw.format != RawFormat::mjpg) {
       fault_.assign({"the frame is ", name(raw.format), ", not MJPG"});
     } else if (raw.bytes.empty()) {
@@ -70,6 +73,7 @@ class MjpgDecoder::Impl {
     } else if (const std::string_view fault = read_jpeg_header(raw.bytes, header); !fault.empty()) {
       fault_.assign({fault});
     } else if (header.width != raw.width || header.height != raw.height) {
+      is_of_another_size_ = true;
       fault_.assign({"the JPEG picture is "});
       append({header.width, header.height});
       fault_.append(", but ");
@@ -103,11 +107,14 @@ class MjpgDecoder::Impl {
   Size scaled_;
   std::vector<std::uint8_t> pixels_;
   FixedText fault_;
+  bool is_of_another_size_ = false;
 };
 
 MjpgDecoder::MjpgDecoder(const PictureNeeds& needs) : impl_(std::make_unique<Impl>(needs)) {}
 
 MjpgDecoder::~MjpgDecoder() = default;
+
+bool MjpgDecoder::is_of_another_size() const noexcept { return impl_->is_of_another_size(); }
 
 std::string_view MjpgDecoder::decode(const RawPicture& raw, Image& image) noexcept {
   try {

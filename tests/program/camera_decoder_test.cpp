@@ -23,6 +23,21 @@ TEST(CameraDecoder, TakesWhateverACameraSends) {
   EXPECT_EQ(image.format, PixelFormat::gray8);
 }
 
+TEST(CameraDecoder, SaysWhatToDoWherePicturesAreOfAnotherSizeThanDeclared) {
+  const test::Bytes jpeg = test::jpeg_of(test::textured(320, 240));
+  Image image;
+  CameraDecoder of_a_video({});
+  EXPECT_EQ(of_a_video.decode(test::mjpg(jpeg, 640, 480), image),
+            "the JPEG picture is 320x240, but 640x480 was declared");
+  CameraDecoder of_a_camera({}, "ask for another --size");
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(of_a_camera.decode(test::mjpg(jpeg, 640, 480), image),
+              "the JPEG picture is 320x240, but 640x480 was declared: ask for another --size");
+    EXPECT_EQ(of_a_camera.decode(test::mjpg({}, 640, 480), image), "the frame is empty");
+    EXPECT_EQ(of_a_camera.decode(test::mjpg(jpeg, 320, 240), image), "");
+  }
+}
+
 TEST(CameraDecoder, MakesColourWhereThatIsNeeded) {
   CameraDecoder decoder({.width = 224, .height = 224});
   Image image;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+#include <string_view>
+
+#include "seqloop/fixed_text.hpp"
 #include "seqloop/opencv/raw_decoder.hpp"
 #include "seqloop/picture_decoder.hpp"
 #include "seqloop/picture_needs.hpp"
@@ -12,13 +16,16 @@ namespace seqloop::program {
 class CameraDecoder : public PictureDecoder {
  public:
   /// @param needs the describer's
-  explicit CameraDecoder(const PictureNeeds& needs);
+  /// @param size_remedy what to do where JPEG pictures are of another size than was declared
+  explicit CameraDecoder(const PictureNeeds& needs, std::string_view size_remedy = {});
 
   [[nodiscard]] std::string_view decode(const RawPicture& raw, Image& image) noexcept override;
 
  private:
   opencv::RawDecoder raw_;
   turbojpeg::MjpgDecoder mjpg_;
+  std::string size_remedy_;
+  FixedText fault_;
 };
 
 }  // namespace seqloop::program

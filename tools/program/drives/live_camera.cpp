@@ -35,7 +35,8 @@ LiveCamera open_camera(const std::filesystem::path& path, const CameraSettings& 
   const live::CameraOptions options = camera_options(settings, path.string(), needs, fps);
   auto camera = std::make_unique<live::Camera>(options, live::system_calls(), clock);
   const live::CameraFacts facts = camera->facts();
-  auto decoder = std::make_unique<CameraDecoder>(needs);
+  auto decoder = std::make_unique<CameraDecoder>(
+      needs, "ask for another --size or --format; `seqloop camera` lists what there is");
   warm_up(*decoder, describer, facts.mode.format, facts.mode.width, facts.mode.height);
   live::LiveSettings source_settings = live_settings(real_time);
   source_settings.hang_timeout += options.timeout;

@@ -37,6 +37,9 @@ class MjpgDecoder : public PictureDecoder {
   /// not depend on the size, and frees it all.
   [[nodiscard]] std::string_view decode(const RawPicture& raw, Image& image) noexcept override;
 
+  /// Whether the last picture was refused because its size is another than was declared.
+  [[nodiscard]] bool is_of_another_size() const noexcept;
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
