@@ -79,6 +79,22 @@ TEST(Report, SummaryShowsTheBestSettingsAndTheBestOfAPair) {
   EXPECT_TRUE(has(summary, "<td>.444</td>"));    // alone on q
 }
 
+TEST(Report, OfEqualResultsTheFirstIsTheBestAndThePageSaysSo) {
+  Report report;
+  report.results = {synthetic_result("p", "m", "d", {{"ds", "30"}}, 0.5),
+                    synthetic_result("p", "m", "d", {{"ds", "10"}}, 0.5),
+                    synthetic_result("p", "m", "d", {{"ds", "20"}}, 0.5)};
+  report.figures = {{"Curves", "", FigureKind::precision_recall, "", {"ds"}, "", "", {}}};
+  const auto summary = [&] {
+    const std::string page = written(report).at("index.html");
+    return page.substr(0, page.find("<h2>Figures"));
+  };
+  EXPECT_TRUE(has(summary(), "then those that come first in the experiment"));
+  EXPECT_TRUE(has(summary(), "<th scope=\"row\">30</th>"));
+  report.results[2].measures.area_under_curve = 0.6;
+  EXPECT_TRUE(has(summary(), "<th scope=\"row\">20</th>"));
+}
+
 TEST(Report, SummaryTellsCurvesOverDifferentNumbersApart) {
   Report report = small_report();
   for (Result& result : report.results) result.settings.push_back({"threshold-on", "uniqueness"});

@@ -66,10 +66,12 @@ std::string summary(const Chosen& all) {
   for (std::string& name : unnamed_differences(all, table.rows)) table.rows.push_back(name);
   // Nobody sees from a method's name over what its R@100P and its area are.
   if (keys_of(all, {"threshold-on"}).size() > 1) table.rows.emplace_back("threshold-on");
-  return table_html(best_results(all), table,
-                    "For each method the settings with the highest recall at 100 % precision "
-                    "(R@100P). The best of each pair is bold.",
-                    Best::bold);
+  return table_html(
+      best_results(all), table,
+      "For each method the settings with the highest recall at 100 % precision "
+      "(R@100P); of equals those with the larger area under the curve, then those that "
+      "come first in the experiment. The best of each pair is bold.",
+      Best::bold);
 }
 
 std::string figure_html(const Figure& figure, const Chart& chart, std::size_t number,

@@ -13,7 +13,8 @@ namespace seqloop::experiment {
 void add_speed_ups(const Experiment& experiment, std::vector<Result>& results);
 
 /// Adds what `best-of` asks for: of the results that differ in one setting only, the one with the
-/// highest recall at 100 % precision (of equals, the largest area), as a method "NAME (best)".
+/// highest recall at 100 % precision (of equals the largest area, then the first), as a method
+/// "NAME (best)".
 void add_best(const Experiment& experiment, std::vector<Result>& results);
 
 }  // namespace seqloop::experiment
