@@ -100,5 +100,18 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_TRUE(test::says(refused(""), "empty"));
 }
 
+TEST(MatchList, AllBadCellsOfARowAreToldAtOnce) {
+  const std::string said = test::setup_error([] {
+    (void)answers("query,match,uniqueness,probability,accepted\nx,-1,high,2,yes\nx,-1,high,?,1\n");
+  });
+  EXPECT_EQ(said,
+            "r.jsonl:2: 'x' under 'query' is not a whole number up to 2^62\n"
+            "r.jsonl:2: '-1' under 'match' is not a whole number up to 2^62\n"
+            "r.jsonl:2: 'high' under 'uniqueness' is not a number\n"
+            "r.jsonl:2: '2' under 'probability' is not a number from 0 to 1\n"
+            "r.jsonl:2: 'yes' under 'accepted' is not 0 or 1\n"
+            "r.jsonl: and 4 more like these");
+}
+
 }  // namespace
 }  // namespace seqloop::evaluation

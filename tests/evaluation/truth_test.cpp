@@ -91,6 +91,15 @@ TEST(Truth, TellsAllThatIsWrongWithAFile) {
   }
 }
 
+TEST(Truth, TellsAllBadCellsOfARow) {
+  const std::string said = faults_of("query,reference,tolerance\nx,y,z\n");
+  for (const char* header : {"'x' under 'query'", "'y' under 'reference'", "'z' under 'tolerance'"})
+    EXPECT_TRUE(test::says(said, header));
+  const std::string placed = test::setup_error([] { (void)positions("frame,x,y\n-1,a,b\n"); });
+  for (const char* header : {"'-1' under 'frame'", "'a' under 'x'", "'b' under 'y'"})
+    EXPECT_TRUE(test::says(placed, header));
+}
+
 TEST(Truth, ByPositionsOnAPlan) {
   const Positions reference = positions("frame,x,y\n0,0,0\n1,3,4\n2,30,0\n10,0,5\n");
   const Positions query = positions("y,x,frame\n0,0,5\n0,100,6\n-1.5,30,7\n");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <utility>
 
 #include "evaluation/line_faults.hpp"
@@ -14,6 +15,8 @@
 
 namespace seqloop::evaluation {
 namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void trim(std::string_view& text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -144,17 +147,49 @@ std::vector<std::size_t> CsvTable::columns(const std::vector<std::string>& heade
   return found;
 }
 
-void CsvTable::for_each_row(const std::function<void(std::size_t)>& read) const {
+void CsvTable::for_each_row(const std::function<void(CsvRow&)>& read) const {
   LineFaults faults(name_);
   for (std::size_t row = 0; row < rows(); ++row) {
     faults.collect([&] {
       if (const auto wrong = wrong_.find(row); wrong != wrong_.end())
         throw SetupError(wrong->second);
-      read(row);
+      CsvRow cells_of_it(*this, row);
+      read(cells_of_it);
+      if (!cells_of_it.faults().empty()) throw SetupError(cells_of_it.faults());
     });
   }
   faults.refuse();
 }
+
+template <class Cell, class Value>
+Value CsvRow::read(Cell cell, Value otherwise) {
+  try {
+    return cell();
+  } catch (const SetupError& error) {
+    faults_.insert(faults_.end(), error.faults().begin(), error.faults().end());
+    return otherwise;
+  }
+}
+
+std::uint64_t CsvRow::whole(std::size_t column) {
+  return read([&] { return table_->whole(row_, column); }, std::uint64_t{0});
+}
+
+double CsvRow::number(std::size_t column) {
+  return read([&] { return table_->number(row_, column); }, nan);
+}
+
+double CsvRow::number_within(std::size_t column, double least, double most) {
+  return read([&] { return table_->number_within(row_, column, least, most); }, nan);
+}
+
+bool CsvRow::flag(std::size_t column) {
+  return read([&] { return table_->flag(row_, column); }, false);
+}
+
+bool CsvRow::empty(std::size_t column) const { return table_->empty(row_, column); }
+
+std::string CsvRow::where() const { return table_->where(row_); }
 
 std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
   constexpr std::uint64_t most = std::uint64_t{1} << 62U;

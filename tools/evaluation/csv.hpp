@@ -14,6 +14,33 @@
 
 namespace seqloop::evaluation {
 
+class CsvTable;
+
+/// A row that is read to its end: of a cell that is no such number the reader has 0 or NaN, and the
+/// fault is kept beside those of the other cells.
+class CsvRow {
+ public:
+  CsvRow(const CsvTable& table, std::size_t row) : table_(&table), row_(row) {}
+
+  /// As those of the table; none throws.
+  [[nodiscard]] std::uint64_t whole(std::size_t column);
+  [[nodiscard]] double number(std::size_t column);
+  [[nodiscard]] double number_within(std::size_t column, double least, double most);
+  [[nodiscard]] bool flag(std::size_t column);
+  [[nodiscard]] bool empty(std::size_t column) const;
+
+  [[nodiscard]] std::string where() const;
+  [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
+
+ private:
+  template <class Cell, class Value>
+  Value read(Cell cell, Value otherwise);
+
+  const CsvTable* table_;
+  std::size_t row_;
+  Faults faults_;
+};
+
 /// A file of comma-separated numbers under a header line; cells may stand in quotes.
 class CsvTable {
  public:
@@ -43,8 +70,9 @@ class CsvTable {
   [[nodiscard]] std::vector<std::size_t> columns(const std::vector<std::string>& headers) const;
 
   /// Calls `read` for each row that has as many cells as the header; all that reads cells is called
-  /// from there. Throws SetupError with a handful of the other rows and of what `read` throws.
-  void for_each_row(const std::function<void(std::size_t)>& read) const;
+  /// from there. Throws SetupError with a handful of the other rows, of what `read` throws, and of
+  /// the row's cells that are no such number.
+  void for_each_row(const std::function<void(CsvRow&)>& read) const;
 
   /// Throw SetupError, with the line, for a cell that is no such number.
   [[nodiscard]] std::uint64_t whole(std::size_t row, std::size_t column) const;

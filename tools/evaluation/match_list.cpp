@@ -40,14 +40,13 @@ std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) 
   const std::optional<std::size_t> probability = table.find("probability");
   const std::optional<std::size_t> accepted = table.find("accepted");
   Answers answers;
-  table.for_each_row([&](std::size_t row) {
-    Answer answer{table.whole(row, columns[0]), table.whole(row, columns[1]),
-                  table.number(row, columns[2])};
-    if (probability && !std::isnan(table.number(row, *probability))) {
-      answer.probability = table.number_within(row, *probability, 0.0, 1.0);
+  table.for_each_row([&](CsvRow& row) {
+    Answer answer{row.whole(columns[0]), row.whole(columns[1]), row.number(columns[2])};
+    if (probability && !std::isnan(row.number(*probability))) {
+      answer.probability = row.number_within(*probability, 0.0, 1.0);
     }
-    if (accepted) answer.accepted = table.flag(row, *accepted);
-    answers.add(answer, table.where(row));
+    if (accepted) answer.accepted = row.flag(*accepted);
+    if (row.faults().empty()) answers.add(answer, row.where());
   });
   return answers.take();
 }

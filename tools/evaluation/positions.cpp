@@ -42,16 +42,18 @@ Positions Positions::from_csv(const CsvTable& table) {
   const std::size_t first = table.column(on_plan ? "x" : "latitude");
   const std::size_t second = table.column(on_plan ? "y" : "longitude");
   std::set<std::uint64_t> seen;
-  table.for_each_row([&](std::size_t row) {
-    const std::uint64_t number = table.whole(row, frame);
+  const double most_first = on_plan ? farthest_m : 90.0;
+  const double least_second = on_plan ? -farthest_m : -180.0;
+  const double most_second = on_plan ? farthest_m : 360.0;
+  table.for_each_row([&](CsvRow& row) {
+    const std::uint64_t number = row.whole(frame);
+    const double x = row.number_within(first, -most_first, most_first);
+    const double y = row.number_within(second, least_second, most_second);
+    if (!row.faults().empty()) return;
     if (!seen.insert(number).second) {
-      throw SetupError({table.where(row), "frame " + std::to_string(number) + " is given twice"});
+      throw SetupError({row.where(), "frame " + std::to_string(number) + " is given twice"});
     }
-    positions.places.push_back(
-        {number, on_plan ? std::array{0.0, table.number_within(row, first, -farthest_m, farthest_m),
-                                      table.number_within(row, second, -farthest_m, farthest_m)}
-                         : on_ball(table.number_within(row, first, -90.0, 90.0),
-                                   table.number_within(row, second, -180.0, 360.0))});
+    positions.places.push_back({number, on_plan ? std::array{0.0, x, y} : on_ball(x, y)});
   });
   if (positions.places.empty()) throw SetupError({table.name(), "it has no rows"});
   return positions;

@@ -68,14 +68,15 @@ Truth Truth::from_csv(const CsvTable& table, Unlisted unlisted) {
   Truth truth;
   truth.unlisted_ = unlisted;
   std::size_t own = 0;
-  table.for_each_row([&](std::size_t row) {
-    const std::uint64_t place = table.whole(row, columns[1]);
+  table.for_each_row([&](CsvRow& row) {
+    const std::uint64_t query = row.whole(columns[0]);
+    const std::uint64_t place = row.whole(columns[1]);
     Run run{place, place};
-    if (tolerance && !table.empty(row, *tolerance)) {
-      run.tolerance = table.whole(row, *tolerance);
+    if (tolerance && !row.empty(*tolerance)) {
+      run.tolerance = row.whole(*tolerance);
       ++own;
     }
-    truth.places_[table.whole(row, columns[0])].push_back(run);
+    truth.places_[query].push_back(run);
   });
   if (truth.places_.empty()) {
     throw SetupError({table.name(), "it has no rows", "--truth no-revisit if nothing comes back"});

@@ -49,8 +49,8 @@ std::vector<Interval> read_intervals(const std::filesystem::path& file) {
   const auto table = evaluation::CsvTable::read(file);
   const std::vector<std::size_t> columns = table.columns({"from_s", "to_s"});
   std::vector<Interval> intervals;
-  table.for_each_row([&](std::size_t row) {
-    intervals.push_back({table.number(row, columns[0]), table.number(row, columns[1])});
+  table.for_each_row([&](evaluation::CsvRow& row) {
+    intervals.push_back({row.number(columns[0]), row.number(columns[1])});
   });
   return intervals;
 }
