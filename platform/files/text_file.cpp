@@ -7,6 +7,13 @@
 
 namespace seqloop::files {
 
+void refuse_empty(const std::filesystem::path& path, const std::string& remedy) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  if (std::filesystem::file_size(path, error) == 0)
+    throw SetupError(Fault{path.string(), "is empty", remedy});
+}
+
 std::string read_bytes(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   const std::string shown = path.string();
   std::error_code error;

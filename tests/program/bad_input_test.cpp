@@ -603,6 +603,10 @@ TEST_F(BadInput, DrivesWithoutAnyByte) {
                  {"log.avi: is empty", "log.npy: is empty"});
   expect_refused("describe --source empty.mp4 --out d.npy", {"empty.mp4: is empty"});
   expect_match_refused("--query log.npy", {"log.npy: is empty"});
+  std::filesystem::create_symlink("/proc/kmsg", file("log.db3"));
+  expect_refused("run --source log.db3", {"log.db3: is empty; name a drive"});
+  expect_refused("report log.npy --out p.html",
+                 {"log.npy: is empty; name what `seqloop run --out`"});
 }
 
 TEST_F(BadInput, FlagsThatDoNothing) {

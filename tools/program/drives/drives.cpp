@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "files/text_file.hpp"
 #include "program/drives/camera_decoder.hpp"
 #include "program/drives/file_decoder.hpp"
 #include "program/drives/ros_name.hpp"
@@ -55,15 +56,12 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 }
 
 /// Refuses a map, which is no drive, before a reader of drives says that it knows no such format,
-/// and what has no bytes: of the kernel's own files (`/proc/kmsg`) some keep their readers waiting
-/// for ever.
+/// and what has no bytes.
 void refuse_no_drive(const std::filesystem::path& path) {
   constexpr std::string_view magic = "SQLite format 3";
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return;
-  if (std::filesystem::file_size(path, error) == 0) {
-    throw SetupError({path.string(), "is empty", "name a drive"});
-  }
+  files::refuse_empty(path, "name a drive");
   std::string start(magic.size(), '\0');
   std::ifstream(path, std::ios::binary)
       .read(start.data(), static_cast<std::streamsize>(start.size()));
@@ -168,6 +166,7 @@ std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path, const
                                                      settings.fps);
   }
   if (bags::is_bag(path)) {
+    files::refuse_empty(path, "name a drive");
     return std::make_unique<bags::BagSource>(path, settings.topic, std::make_unique<FileDecoder>());
   }
   refuse_no_drive(path);

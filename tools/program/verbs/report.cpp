@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/text_file.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/interruption.hpp"
 #include "program/verbs/all_verbs.hpp"
@@ -27,6 +28,9 @@ struct ReportSettings {
 
 /// Adds a fault where a file cannot be read.
 std::ifstream opened(const std::filesystem::path& file, const std::string& remedy, Faults& faults) {
+  const std::size_t before = faults.size();
+  collect(faults, [&] { files::refuse_empty(file, remedy); });
+  if (faults.size() > before) return {};
   std::error_code error;
   const bool folder = std::filesystem::is_directory(file, error);
   errno = 0;
