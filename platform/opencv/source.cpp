@@ -30,6 +30,9 @@ std::unique_ptr<FrameSource> open_source(const std::filesystem::path& path, Sour
       if (name.find("://") != std::string::npos)
         throw SetupError(Fault{name, "is an address of a network, and no file",
                                "feed it into a virtual camera, or record it to a video file"});
+      if (!name.empty() && name.find_first_not_of("0123456789") == std::string::npos)
+        throw SetupError(Fault{name, "does not exist",
+                               "if it is the number of a camera, name /dev/video" + name});
       throw SetupError(Fault{name, "does not exist", "check the name"});
     case std::filesystem::file_type::none:
     case std::filesystem::file_type::unknown:

@@ -293,6 +293,8 @@ TEST_F(BadInput, Sources) {
   folder_.write("empty.mp4", "");
   const std::string describe = "describe --out d.npy --source ";
   expect_refused(describe + "none", {"none"});
+  expect_refused("run --source 0",
+                 {"0: does not exist; if it is the number of a camera, name /dev/video0"});
   expect_refused(describe + "empty", {"empty"});
   expect_refused(describe + "noise.mp4", {"noise.mp4"});
   expect_refused(describe + "empty.mp4", {"empty.mp4"});
