@@ -103,6 +103,27 @@ TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
   expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
 }
 
+TEST_F(LastingMaps, WhereAllFramesAreSavedWhatIsMissingIsNamed) {
+  write("long.npy", oracle::drive(1, 600, 40, 0.2F));
+  std::size_t frames_alone = 0;
+  bool whole = false;
+  for (int size = 56; size < 2'000 && !whole; size += 8) {
+    std::filesystem::remove(file("m.seqloop"));
+    const test::Outcome full =
+        run("--version; trap '' XFSZ; ulimit -f " + std::to_string(size) +
+            "; '" SEQLOOP_BINARY "' match --query long.npy --map m.seqloop --out m.csv");
+    whole = full.exit_code == 0;
+    if (whole || full.err.find("600 frames are saved") == std::string::npos) continue;
+    ++frames_alone;
+    EXPECT_NE(full.err.find("not all of the drive is saved: its frames are, and not all that was "
+                            "learnt of them (links, thumbnails, statistics); m.seqloop: "),
+              std::string::npos)
+        << full.err;
+  }
+  EXPECT_TRUE(whole);
+  EXPECT_GT(frames_alone, 0U);
+}
+
 TEST_F(LastingMaps, OfSessionsThatWereSeenOftenEnoughVisitsStay) {
   std::string last;
   for (unsigned n = 0; n < 8; ++n) {

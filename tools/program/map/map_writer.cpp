@@ -350,7 +350,13 @@ std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const
   handing_.store(Handing::asked, std::memory_order_relaxed);
   hand_over_statistics(detector);
   ending_ = true;
-  if (!save()) return why_;
+  if (!save()) {
+    const bool frames_are = saved() >= frames_.load(std::memory_order_relaxed);
+    return (frames_are ? "its frames are, and not all that was learnt of them (links, thumbnails, "
+                         "statistics); "
+                       : "") +
+           why_;
+  }
   if (novel_) retired_ = retire_superseded(*stored_, *map_, linked_, none);
   return std::nullopt;
 }
