@@ -26,6 +26,15 @@ class StreetDrive : public test::Program {
   }
 };
 
+TEST_F(StreetDrive, ItsProgramTellsItsVersionAndWhereHelpIs) {
+  const test::Outcome version = run("--version; '" SEQLOOP_STREET_BINARY "' --version");
+  EXPECT_EQ(version.exit_code, 0) << version.err;
+  EXPECT_NE(version.out.find("seqloop-street "), std::string::npos) << version.out;
+  const test::Outcome wrong = run("--version; '" SEQLOOP_STREET_BINARY "' --wrong");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("--wrong; see seqloop-street --help"), std::string::npos) << wrong.err;
+}
+
 TEST_F(StreetDrive, IsLocalisedInAnotherSeason) {
   make("--frames 300 --drives localise");
   for (const std::string drive : {"reference", "query"}) {

@@ -119,12 +119,13 @@ int main(int argc, char** argv) {
       ->type_name(light_names());
   app.add_flag("--keep", o.keep, "do nothing if DIR was made with the same parameters");
   app.add_flag("--quiet", o.quiet, "no progress bar");
+  app.set_version_flag("--version", "seqloop-street " SEQLOOP_VERSION, "print the version");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    complain(std::string("command line: ") + error.what());
+    complain(std::string("command line: ") + error.what() + "; see seqloop-street --help");
     return 2;
   }
   std::vector<std::string> faults;
