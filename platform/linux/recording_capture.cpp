@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <new>
+#include <string_view>
 #include <utility>
 
 #include "linux/time_step.hpp"
+#include "seqloop/detail/format_fault.hpp"
 
 namespace seqloop::live {
 namespace {
@@ -80,9 +82,9 @@ void RecordingCapture::read_ahead() noexcept {
     case Grab::frame:
       break;
   }
-  if (frame.image.format > PixelFormat::bgr8) {
+  if (const std::string_view fault = format_fault(frame.image.format); !fault.empty()) {
     ahead_->what = Capture::bad_frame;
-    ahead_->fault.assign({"the picture's format is none of its values: take gray8 or bgr8"});
+    ahead_->fault.assign({fault});
     return;
   }
   try {

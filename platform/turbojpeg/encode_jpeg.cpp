@@ -5,10 +5,12 @@
 
 #include <memory>
 
+#include "seqloop/detail/format_fault.hpp"
+
 namespace seqloop::turbojpeg {
 
 std::vector<std::uint8_t> encode_jpeg(const Image& image, int quality) {
-  if (image.format > PixelFormat::bgr8) return {};
+  if (!format_fault(image.format).empty()) return {};
   const std::unique_ptr<void, decltype(&tjDestroy)> compressor(tjInitCompress(), &tjDestroy);
   if (!compressor) return {};
   const bool gray = image.format == PixelFormat::gray8;

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string_view>
 
+#include "seqloop/detail/format_fault.hpp"
 #include "seqloop/frame.hpp"
 
 namespace seqloop::opencv {
@@ -24,8 +25,7 @@ namespace seqloop::opencv {
 /// What is wrong with a picture; empty where nothing is.
 [[nodiscard]] inline std::string_view fault_of(const Image& image) noexcept {
   if (image.data == nullptr || image.width <= 0 || image.height <= 0) return "the picture is empty";
-  if (image.format > PixelFormat::bgr8)
-    return "the picture's format is none of its values: take gray8 or bgr8";
+  if (const std::string_view fault = format_fault(image.format); !fault.empty()) return fault;
   const std::size_t bytes_a_pixel = image.format == PixelFormat::gray8 ? 1 : 3;
   if (image.stride < static_cast<std::size_t>(image.width) * bytes_a_pixel)
     return "the picture's rows are shorter than the picture is wide";
