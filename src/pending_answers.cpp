@@ -98,7 +98,7 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
 /// found lately: it may be where nobody has driven before.
 double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
   constexpr double of_a_first_loop = 2.2;
-  constexpr double of_other_loops = 0.7;
+  constexpr double of_other_loops = 0.9;
   constexpr double of_other_drives = 0.5;
   const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
   if (of_this_drive) return last_found_ ? of_other_loops : of_a_first_loop;

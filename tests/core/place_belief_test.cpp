@@ -455,9 +455,9 @@ TEST(PlaceBelief, AsksMuchOfAFirstLoopAndALittleOfOthers) {
   EXPECT_EQ(detector.evidence()->asked, 2.2) << "it was asked before the answer was given";
   const auto rest = std::span(same).subspan(100 + steps);
   take(detector, rest.first(1));
-  EXPECT_EQ(detector.evidence()->asked, 0.7);
+  EXPECT_EQ(detector.evidence()->asked, 0.9);
   take(detector, way(2, 250, 0.5F, 1));
-  EXPECT_EQ(detector.evidence()->asked, 0.7) << "however long ago that was";
+  EXPECT_EQ(detector.evidence()->asked, 0.9) << "however long ago that was";
   // The frames after a gap may be anywhere.
   detector.skip(robot.config.sequence_length + 1);
   take(detector, rest.first(5));
