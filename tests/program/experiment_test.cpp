@@ -601,6 +601,23 @@ best-of = "ds"
   EXPECT_EQ(table.whole(0, table.column("frames")), 40U);
 }
 
+TEST_F(Experiments, ListTheBestInTheOrderOfTheFile) {
+  write_experiment(std::string(drives) + pair + R"(
+[[method]]
+name = "m"
+method = "a-seqcnnslam"
+descriptor = "gradients"
+ds = [2, 4]
+k = [6, 10]
+best-of = "ds"
+)");
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 6U) << "four, and the best with each k";
+  EXPECT_EQ(table.whole(4, table.column("k")), 6U);
+  EXPECT_EQ(table.whole(5, table.column("k")), 10U);
+}
+
 /// What the file calls `method` here, results call the algorithm.
 TEST_F(Experiments, RankAlgorithms) {
   write_experiment(std::string(drives) + pair + R"(

@@ -157,9 +157,10 @@ void count(std::string_view model, const std::vector<std::size_t>& all_places) {
 }  // namespace seqloop::cost
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fputs(seqloop::cost::usage.data(), stderr);
-    return 2;
+  const bool asks_for_help = argc == 2 && std::string_view(argv[1]) == "--help";
+  if (argc < 2 || asks_for_help) {
+    std::fputs(seqloop::cost::usage.data(), asks_for_help ? stdout : stderr);
+    return asks_for_help ? 0 : 2;
   }
   try {
     const bool serves = std::string_view(argv[1]) == "serve";

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "program/drives/match_drive.hpp"
@@ -35,9 +36,11 @@ void write(const Matrix& query, std::optional<Matrix> reference) {
 
 int main(int count, char** words) {
   const std::span<char*> all(words, static_cast<std::size_t>(count));
-  if (count != 2 && count != 3) {
-    std::fputs("usage: seqloop-evidence QUERY.npy [REFERENCE.npy]\n", stderr);
-    return 2;
+  const bool asks_for_help = count == 2 && std::string_view(all[1]) == "--help";
+  if ((count != 2 && count != 3) || asks_for_help) {
+    std::fputs("usage: seqloop-evidence QUERY.npy [REFERENCE.npy]\n",
+               asks_for_help ? stdout : stderr);
+    return asks_for_help ? 0 : 2;
   }
   try {
     std::optional<Matrix> reference;

@@ -2,8 +2,9 @@
 #include "experiment/run/summary.hpp"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "experiment/run/fingerprint.hpp"
 
@@ -48,14 +49,19 @@ void add_speed_ups(const Experiment& experiment, std::vector<Result>& results) {
 
 void add_best(const Experiment& experiment, std::vector<Result>& results) {
   for (const BestOf& best_of : experiment.best_of) {
-    std::map<std::string, Result> best;
+    // In the order of the file.
+    std::vector<std::pair<std::string, Result>> best;
     for (const Result& result : results) {
       if (result.method != best_of.method) continue;
       std::vector<Setting> others = result.settings;
       std::erase_if(others, [&](const Setting& each) { return each.name == best_of.setting; });
       const std::string group = result.pair + ';' + result.descriptor + ';' + text_of(others);
-      const auto [found, fresh] = best.try_emplace(group, result);
-      if (!fresh && better(result, found->second)) found->second = result;
+      const auto found = std::ranges::find(best, group, &std::pair<std::string, Result>::first);
+      if (found == best.end()) {
+        best.emplace_back(group, result);
+      } else if (better(result, found->second)) {
+        found->second = result;
+      }
     }
     for (auto& [group, result] : best) {
       result.method += " (best)";
