@@ -29,12 +29,28 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
   while (back < held && at != none) {
     const Traced& step = steps_[frame * width_ + at];
     if (step.row == gone<std::uint32_t>) break;
-    out[back++] = {step.row, static_cast<double>(step.gain), static_cast<double>(novelties_[frame]),
-                   static_cast<double>(changes_[frame])};
+    out[back++] = {.row = step.row,
+                   .gain = static_cast<double>(step.gain),
+                   .novelty = static_cast<double>(novelties_[frame]),
+                   .change = static_cast<double>(changes_[frame]),
+                   .in_step = static_cast<double>(step.in_step)};
     at = parents_[frame * width_ + at];
     frame = (frame == 0 ? novelties_.size() : frame) - 1;
   }
   return back;
+}
+
+std::optional<std::size_t> BeliefTraces::row_before(Index index,
+                                                    std::size_t frames) const noexcept {
+  if (frames >= frames_) return std::nullopt;
+  std::size_t frame = newest_;
+  for (; frames > 0 && index != none; --frames) {
+    index = parents_[frame * width_ + index];
+    frame = (frame == 0 ? novelties_.size() : frame) - 1;
+  }
+  if (index == none) return std::nullopt;
+  const std::uint32_t row = steps_[frame * width_ + index].row;
+  return row == gone<std::uint32_t> ? std::nullopt : std::optional<std::size_t>(row);
 }
 
 void BeliefTraces::removed(std::size_t row, bool forgotten) noexcept {

@@ -53,8 +53,8 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
     const Scene& scene = scenes_[frame];
     const bool stays_at_first = row == session.first && scene.novelty > Scene::least_novelty;
     if (stays_at_first && ++stays > most_stays) return count;
-    std::optional<CloseSketch> before;
-    if (frame >= contrast_apart) before = sketch(frame - contrast_apart);
+    FramePair frames{sketch(frame), std::nullopt};
+    if (frame >= frames_apart) frames.before = sketch(frame - frames_apart);
     double best = 0.0;
     std::size_t from = row;
     for (std::size_t by = 0; by < scene.moves().size() && row >= session.first + by; ++by) {
@@ -67,7 +67,7 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
       from = row - by;
     }
     row = from;
-    const double gain = gain_of(scene, map, rows_, sketch(frame), before, row, sketches).gain;
+    const double gain = gain_of(scene, map, rows_, frames, row, sketches).gain;
     trace[at++] = {row, scene.novelty * gain, scene.novelty, scene.change};
   }
   return at;

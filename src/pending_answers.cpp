@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -132,6 +133,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const double usual = belief.usual_gain();
   const double novelty = belief.usual_novelty();
   ask_belief(map, newest, trace);
+  ask_steps(trace);
   span_.ask(trace, usual);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
@@ -161,6 +163,28 @@ void PendingAnswers::ask_belief(const PlaceMap& map, std::uint64_t newest,
     trace[back].elsewhere =
         then.new_place > half || (map.order().apart(then.likeliest, trace[back].row) > own &&
                                   !map.same_place(then.likeliest, trace[back].row));
+  }
+}
+
+/// Whether a trace changes as the frames do: a road beside it may look much like it, but changes in
+/// its own way. Where little of a place is to be seen, all of the trace changes less than others
+/// do.
+void PendingAnswers::ask_steps(std::span<BeliefTraces::Step> trace) const noexcept {
+  if (!grows_) return;
+  constexpr double weight = 6.0;
+  constexpr double most = 0.06;
+  constexpr double share = 0.8;
+  double sum = 0.0;
+  double novelty = 0.0;
+  for (const BeliefTraces::Step& step : trace) {
+    if (std::isnan(step.in_step)) continue;
+    sum += step.novelty * step.in_step;
+    novelty += step.novelty;
+  }
+  if (novelty <= 0.0) return;
+  const double usual = std::min(most, share * sum / novelty);
+  for (BeliefTraces::Step& step : trace) {
+    if (!std::isnan(step.in_step)) step.gain += weight * step.novelty * (step.in_step - usual);
   }
 }
 

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "seqloop/detail/portable_math.hpp"
+#include "seqloop/detail/sketch.hpp"
 
 namespace seqloop {
 namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Chances of a novel frame: to leave the map; to come back onto it.
 constexpr double leaving = 0.01;
@@ -97,6 +101,14 @@ Moves moves_at(double pace) {
   return moves;
 }
 
+/// How far two frames lie apart, squared: no less than .3 of what frames do that have nothing to do
+/// with each other. @param mean share of bits in which those differ
+double way_between(const DescriptorRows& frames, std::size_t a, std::size_t b, double mean) {
+  constexpr double least = 0.3;
+  return std::max(squared_chord(frames.look_closely(frames, a, b) / DescriptorRows::close_bits),
+                  least * squared_chord(mean));
+}
+
 bool used(const MatcherConfig& config) { return config.decision == Decision::probability; }
 
 }  // namespace
@@ -156,8 +168,8 @@ bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
 void PlaceBelief::prefetch(const SceneView& view) noexcept {
   const PlaceOrder& order = view.map->order();
   for (const CandidateProposals::Alike& found : view.seen->found()) {
-    if (found.row + contrast_apart >= view.rows) continue;
-    view.map->rows().prefetch_sketches(order.slot(found.row + contrast_apart), 1);
+    if (found.row + frames_apart >= view.rows) continue;
+    view.map->rows().prefetch_sketches(order.slot(found.row + frames_apart), 1);
   }
 }
 
@@ -317,13 +329,30 @@ void PlaceBelief::take_on(const PlaceOrder& order, Hypothesis& at, const Moved& 
   at.age *= moved.share;
 }
 
+/// The row that a hypothesis was at as the frame before came, that it is compared with; none where
+/// it was not, has hardly moved since, or came by another visit of its place.
+std::optional<std::size_t> PlaceBelief::came_from(const PlaceOrder& order,
+                                                  const Hypothesis& at) const noexcept {
+  constexpr std::size_t least = 2;
+  constexpr std::size_t most_rows = 2 * frames_apart;
+  // The newest frame's parents are of the frame before it.
+  const auto from = traces_.row_before(at.parent, frames_apart - 1);
+  if (!from || *from < order.around(at.row).first) return std::nullopt;
+  if (*from + least > at.row || *from + most_rows < at.row) return std::nullopt;
+  return from;
+}
+
 void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const PlaceOrder& order = view.map->order();
   const QueryHistory& queries = *view.queries;
-  const CloseSketch newest = queries.rows().close_sketch(queries.row_of(view.newest));
-  std::optional<CloseSketch> before;
-  if (view.newest >= view.oldest + contrast_apart) {
-    before = queries.rows().close_sketch(queries.row_of(view.newest - contrast_apart));
+  const std::size_t newest = queries.row_of(view.newest);
+  FramePair frames{queries.rows().close_sketch(newest), std::nullopt};
+  double way = 0.0;
+  if (view.newest >= view.oldest + frames_apart) {
+    const std::size_t before = queries.row_of(view.newest - frames_apart);
+    frames.before = queries.rows().close_sketch(before);
+    way = way_between(queries.rows(), newest, before, scene.mean);
+    ++sketches_;
   }
   std::array<double, most> gains;
   const double w = scene.novelty;
@@ -331,13 +360,18 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     Hypothesis& at = next_[i];
     take_on(order, at, moved_[i], scene.drives());
-    const auto [l, contrast] =
-        gain_of(scene, *view.map, view.rows, newest, before, at.row, sketches_);
+    const RowGain gain = gain_of(scene, *view.map, view.rows, frames, at.row, sketches_);
+    const double l = gain.gain;
     gains[i] = l;
     at.told = w * l;
+    at.step = unknown;
+    if (const auto from = came_from(order, at); from && frames.before) {
+      at.step = in_step(scene, *view.map, frames, way, gain, *from, sketches_);
+      at.in_step += most_forgotten * (at.step - at.in_step);
+    }
     at.mass *= exponential(at.told);
     at.gain = (1.0 - forgotten_by(w)) * at.gain + at.told;
-    at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * contrast;
+    at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * gain.contrast;
     at.age += w;
     at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
   }
@@ -349,7 +383,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   new_place_ /= sum;
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
-    traces_.set(i, rows_[i].row, rows_[i].parent, rows_[i].told);
+    traces_.set(i, rows_[i].row, rows_[i].parent, rows_[i].told, rows_[i].step);
   }
 }
 
@@ -427,6 +461,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps)
                           .known = -logarithm(least_new + new_place_),
                           .lead = wrong_.lead(top->gain),
                           .contrast = top->contrast,
+                          .in_step = top->in_step,
                           .age = logarithm(1.0 + top->age),
                           .doubt = top->doubt,
                           .jumps = jumps}};
@@ -440,7 +475,7 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   at.past = top.past;
   at.age = std::max(at.age, top.age);
   const auto index = static_cast<std::size_t>(&at - rows_.data());
-  traces_.set(index, at.row, top.parent, at.told);
+  traces_.set(index, at.row, top.parent, at.told, at.step);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the
@@ -493,7 +528,7 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
       if (order.apart(row, row + rows) != rows) continue;
       rows_[count_] = rows_[i];
       rows_[count_].row = row + rows;
-      traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0);
+      traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0, unknown);
     }
   }
 }

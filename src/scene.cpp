@@ -30,10 +30,9 @@ News news_of(const SceneView& view, double mean, std::size_t& sketches) {
   const DescriptorRows& queries = view.queries->rows();
   const auto squared = [&](std::size_t back) {
     ++sketches;
-    const double d = chord(queries.look_closely(queries, view.queries->row_of(view.newest),
-                                                view.queries->row_of(view.newest - back)) /
-                           DescriptorRows::close_bits);
-    return d * d;
+    return squared_chord(queries.look_closely(queries, view.queries->row_of(view.newest),
+                                              view.queries->row_of(view.newest - back)) /
+                         DescriptorRows::close_bits);
   };
   const double before = squared(1);
   const double cosine = std::max(0.0, 1.0 - before / 2.0);
@@ -41,7 +40,7 @@ News news_of(const SceneView& view, double mean, std::size_t& sketches) {
   const double change = std::min(highest, std::max(0.0, 1.0 - cosine - noise) / (1.0 + cosine));
   if (change <= 0.0) return {0.0, 0.0};
   // A camera that shakes, or noise, changes much from frame to frame and goes nowhere.
-  const double mu = chord(mean) * chord(mean);
+  const double mu = squared_chord(mean);
   double gone = 1.0;
   if (before <= 0.9 * mu) {
     const double earlier =
@@ -99,32 +98,47 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
                logarithm(exponentials / n) + above, news.change, news.novelty};
 }
 
-RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, CloseSketch frame,
-                const std::optional<CloseSketch>& before, std::size_t row,
-                std::size_t& sketches) noexcept {
+RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, const FramePair& frames,
+                std::size_t row, std::size_t& sketches) noexcept {
   const PlaceOrder& order = map.order();
   const auto share = [&](CloseSketch sketch, std::size_t there) {
     ++sketches;
     return map.rows().look_closely(sketch, order.slot(there)) / DescriptorRows::close_bits;
   };
-  const double here = share(frame, row);
+  const double here = share(frames.newest, row);
+  double before = 0.0;
   double contrast = 0.0;
-  if (before) {
+  if (frames.before) {
     const CandidateRun session = order.around(row);
-    double around = 2.0 * share(*before, row);
+    before = share(*frames.before, row);
+    double around = 2.0 * before;
     double weight = 2.0;
-    if (row >= session.first + contrast_apart) {
-      around += share(frame, row - contrast_apart);
+    if (row >= session.first + frames_apart) {
+      around += share(frames.newest, row - frames_apart);
       weight += 1.0;
     }
-    if (row + contrast_apart < std::min(rows, session.last)) {
-      around += share(frame, row + contrast_apart);
+    if (row + frames_apart < std::min(rows, session.last)) {
+      around += share(frames.newest, row + frames_apart);
       weight += 1.0;
     }
     contrast = (around / weight - here) / scene.deviation;
   }
   const double z = scene.likeness(here);
-  return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast};
+  return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast, here, before};
+}
+
+double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames, double way,
+               const RowGain& at, std::size_t from, std::size_t& sketches) noexcept {
+  const auto squared = [&](CloseSketch sketch) {
+    ++sketches;
+    return squared_chord(map.rows().look_closely(sketch, map.order().slot(from)) /
+                         DescriptorRows::close_bits);
+  };
+  const double together = squared_chord(at.here) + squared(*frames.before);
+  const double across = squared_chord(at.before) + squared(frames.newest);
+  const double along = (across - together) / (2.0 * way);
+  const double alike = std::max(0.0, 1.0 - together / (2.0 * squared_chord(scene.mean)));
+  return along - 0.4 * alike - std::min(0.06, 0.25 * alike);
 }
 
 }  // namespace seqloop

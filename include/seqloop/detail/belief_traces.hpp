@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -32,6 +33,8 @@ class BeliefTraces {
     double change;       ///< of the frame, as `Scene` has it
     double asked = 0.0;  ///< gain from which on the frame rather lies on the trace than before it
     bool elsewhere = false;  ///< whether the belief of its time was elsewhere
+    /// As `in_step` has it; NaN: nothing is known.
+    double in_step = std::numeric_limits<double>::quiet_NaN();
   };
 
   /// Begins the next frame; `set` fills it in.
@@ -39,10 +42,17 @@ class BeliefTraces {
 
   /// A hypothesis of the newest frame.
   /// @param parent its index at the frame before, or none
-  void set(std::size_t index, std::size_t row, Index parent, double gain) noexcept {
+  /// @param gain, in_step as `Step` has them
+  void set(std::size_t index, std::size_t row, Index parent, double gain, double in_step) noexcept {
     parents_[newest_ * width_ + index] = parent;
-    steps_[newest_ * width_ + index] = {static_cast<std::uint32_t>(row), static_cast<float>(gain)};
+    steps_[newest_ * width_ + index] = {static_cast<std::uint32_t>(row), static_cast<float>(gain),
+                                        static_cast<float>(in_step)};
   }
+
+  /// The row that a hypothesis of the newest frame was at so many frames before; none if it was
+  /// born later, or the row is not known any more. Work: as many.
+  [[nodiscard]] std::optional<std::size_t> row_before(Index index,
+                                                      std::size_t frames) const noexcept;
 
   /// The way that a row of the newest frame was come by, frame by frame back from there.
   /// @param out written, as many as there are at most. @return how many. Work: as many.
@@ -61,6 +71,7 @@ class BeliefTraces {
   struct Traced {
     std::uint32_t row;
     float gain;
+    float in_step;
   };
 
   std::size_t width_;

@@ -12,6 +12,7 @@ struct Evidence {
   double known = 0.0;     ///< -ln (1e-4 + the belief in "somewhere new")
   double lead = 0.0;      ///< how far it has done better than the best wrong rows usually do
   double contrast = 0.0;  ///< how much better it looks than the rows and frames around it
+  double in_step = 0.0;   ///< how far it changes as the frames do, as `in_step` has it
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
@@ -19,17 +20,25 @@ struct Evidence {
   double asked = 0.0;     ///< how much more the log-odds have to be, since much looks alike
 };
 
+/// From these odds on, a belief of .88, no other place rivals the likeliest one.
+inline constexpr double least_odds = 2.0;
+
+/// What the look of a place is worth. Of two that are alike both change as the frames do, so that
+/// it counts only where there is no rival.
+[[nodiscard]] inline double log_odds_of_look(const Evidence& e) noexcept {
+  return e.odds < least_odds ? 1.094 * e.contrast : 0.6 * e.contrast + 15.0 * e.in_step;
+}
+
 /// The log-odds that the row is right, by a trace that has been followed for long: a logistic
 /// regression. Source: src/README.md, section 6.4.
 [[nodiscard]] inline double log_odds_followed(const Evidence& e) noexcept {
-  return -5.879 + 0.104 * e.odds + 0.89 * e.lead + 1.094 * e.contrast + 0.808 * e.age +
+  return -5.879 + 0.104 * e.odds + 0.89 * e.lead + log_odds_of_look(e) + 0.808 * e.age +
          8.984 * e.margin;
 }
 
 /// The same by how little is left for all else, however short the trace is. It says nothing of a
-/// place that has less than .88 of the belief: others may be as good. Source: as above.
+/// place that has rivals: they may be as good. Source: as above.
 [[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
-  constexpr double least_odds = 2.0;
   if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
   return -3.25 + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
 }

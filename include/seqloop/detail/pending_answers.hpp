@@ -166,6 +166,7 @@ class PendingAnswers {
                    std::span<BeliefTraces::Step> trace) noexcept;
   void ask_belief(const PlaceMap& map, std::uint64_t newest,
                   std::span<BeliefTraces::Step> trace) noexcept;
+  void ask_steps(std::span<BeliefTraces::Step> trace) const noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;

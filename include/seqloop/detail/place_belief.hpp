@@ -29,7 +29,8 @@ class PlaceBelief {
 
   /// Pairs of sketches that one frame compares.
   static constexpr std::size_t most_sketches =
-      most_sketches_of_gain * most + SceneGauge::most_sketches + FirstFrames::most_sketches;
+      (most_sketches_of_gain + sketches_of_in_step) * most + 1 + SceneGauge::most_sketches +
+      FirstFrames::most_sketches;
 
   /// Frames before the newest one that are looked back on.
   static constexpr std::size_t reach = SceneGauge::reach;
@@ -111,6 +112,8 @@ class PlaceBelief {
     double wrong = 0.0;     // the same of the frames at which it was wrong
     double past = -10.0;    // best log-odds on the way
     double contrast = 0.0;  // decaying mean
+    double step = 0.0;      // the newest `in_step`; NaN: nothing is known
+    double in_step = 0.0;   // decaying mean of those that are known
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
@@ -143,6 +146,8 @@ class PlaceBelief {
   void hand_over(const PlaceMap& map) noexcept;
   void take_on(const PlaceOrder& order, Hypothesis& at, const Moved& moved,
                bool drives) const noexcept;
+  [[nodiscard]] std::optional<std::size_t> came_from(const PlaceOrder& order,
+                                                     const Hypothesis& at) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;

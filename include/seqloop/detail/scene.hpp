@@ -52,25 +52,47 @@ struct Scene {
   [[nodiscard]] double likeness(double share) const noexcept { return (mean - share) / deviation; }
 };
 
+/// Frames, and rows, that lie so far apart are compared.
+inline constexpr std::size_t frames_apart = 8;
+
+/// The newest frame, and the one `frames_apart` before it; none: there is none.
+struct FramePair {
+  CloseSketch newest;
+  std::optional<CloseSketch> before;
+};
+
 /// What a frame says for a row of the map.
 struct RowGain {
   double gain;      ///< by novelty, ln of how much likelier the frame is there, -1.5 .. 3
   double contrast;  ///< how much more alike than the frames and rows that lie a little off; 0 where
                     ///< there is no such frame
+  double here;      ///< share of bits in which the newest frame differs from the row
+  double before;    ///< the same of the frame before; 0 where there is none
 };
-
-/// Frames and rows that lie so far off are compared with.
-inline constexpr std::size_t contrast_apart = 8;
 
 /// Pairs of sketches that `gain_of` compares at most.
 inline constexpr std::size_t most_sketches_of_gain = 4;
 
-/// @param rows   of the map that may be searched
-/// @param before the frame `contrast_apart` before it; none: there is none
+/// @param rows of the map that may be searched
 /// @param sketches grows by the pairs compared
 [[nodiscard]] RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows,
-                              CloseSketch frame, const std::optional<CloseSketch>& before,
-                              std::size_t row, std::size_t& sketches) noexcept;
+                              const FramePair& frames, std::size_t row,
+                              std::size_t& sketches) noexcept;
+
+/// Pairs of sketches that `in_step` compares.
+inline constexpr std::size_t sketches_of_in_step = 2;
+
+/// How far the places along a trace have changed as the frames did, from the one before to the
+/// newest: .54 if they are the same pictures, 0 if they have nothing to do with them, and less where
+/// they look like the frames but change in another way. Source: src/README.md, section 6.2.
+/// @param frames both
+/// @param way    between them, the square of a distance, above 0
+/// @param at     of the trace's row at the newest frame
+/// @param from   the trace's row at the frame before
+/// @param sketches grows by the pairs compared
+[[nodiscard]] double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames,
+                             double way, const RowGain& at, std::size_t from,
+                             std::size_t& sketches) noexcept;
 
 /// Makes the scene of each frame. Source: src/README.md, sections 6.1 and 6.2.
 class SceneGauge {

@@ -77,4 +77,10 @@ void sketch_together(const std::uint8_t* both, const SketchedValue* chosen, std:
   return 32.0 * x / (5.0 - 4.0 * x);
 }
 
+/// Its square.
+[[nodiscard]] constexpr double squared_chord(double share) noexcept {
+  const double d = chord(share);
+  return d * d;
+}
+
 }  // namespace seqloop
