@@ -596,13 +596,14 @@ TEST(PlaceBelief, TakesNoneOfTwoPlacesThatAreAlike) {
   }
 }
 
-/// A road, another beside it from which much of the same is to be seen, and the first one again.
-/// What is seen from both, the share `seen` of it, has gone by after so many frames.
+/// Answers that are accepted on a road beside another, and as that one comes again.
 struct Beside {
   std::size_t wrong = 0;
   std::size_t right = 0;
 };
 
+/// A road, another beside it from which much of the same is to be seen, and the first one again.
+/// What is seen from both, the share `seen` of it, has gone by after so many frames.
 Beside accepted_beside(std::size_t frames, float seen) {
   Beside all;
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {

@@ -83,8 +83,8 @@ inline constexpr std::size_t most_sketches_of_gain = 4;
 inline constexpr std::size_t sketches_of_in_step = 2;
 
 /// How far the places along a trace have changed as the frames did, from the one before to the
-/// newest: .54 if they are the same pictures, 0 if they have nothing to do with them, and less where
-/// they look like the frames but change in another way. Source: src/README.md, section 6.2.
+/// newest: .54 if they are the same pictures, 0 if they have nothing to do with them, and less
+/// where they look like the frames but change in another way. Source: src/README.md, section 6.2.
 /// @param frames both
 /// @param way    between them, the square of a distance, above 0
 /// @param at     of the trace's row at the newest frame
