@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <ranges>
 #include <tuple>
 
 #include "core/matcher.hpp"
@@ -346,8 +345,11 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     std::vector<BeliefTraces::Step> trace(PlaceBelief::depth(config));
     trace.resize(belief.trace(belief.likeliest()->index, trace));
     const std::vector<std::size_t>& way = naive.top_row.way;
-    if (std::ranges::equal(trace, way | std::views::reverse | std::views::take(trace.size()), {},
-                           &BeliefTraces::Step::row)) {
+    const auto same_row = [](const BeliefTraces::Step& step, std::size_t row) {
+      return step.row == row;
+    };
+    if (trace.size() <= way.size() &&
+        std::equal(trace.begin(), trace.end(), way.rbegin(), same_row)) {
       ++traced;
       ASSERT_NEAR(e.in_step, naive.evidence.in_step, 1e-3);
       ASSERT_EQ(std::isnan(trace.front().in_step), std::isnan(naive.top_row.step));
