@@ -49,3 +49,12 @@ if [ "$code" != 2 ] || [ "$(grep -c '^accuracy: .* is not there; ' "$work/said")
   echo "tools/accuracy nowhere does not name the program and the four drives that are missing"
   exit 1
 fi
+mkdir drives
+touch drives/mine.csv
+code=0
+sh ../checkout/tools/demo drives >"$work/said" 2>&1 || code=$?
+if [ "$code" != 2 ] || ! grep -q "^demo: $work/here/drives holds something else" "$work/said"; then
+  cat "$work/said"
+  echo "tools/demo drives writes into a folder that holds something else"
+  exit 1
+fi
