@@ -35,7 +35,7 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
                    .change = static_cast<double>(changes_[frame]),
                    .in_step = static_cast<double>(step.in_step)};
     at = parents_[frame * width_ + at];
-    frame = (frame == 0 ? novelties_.size() : frame) - 1;
+    frame = before(frame);
   }
   return back;
 }
@@ -46,7 +46,7 @@ std::optional<std::size_t> BeliefTraces::row_before(Index index,
   std::size_t frame = newest_;
   for (; frames > 0 && index != none; --frames) {
     index = parents_[frame * width_ + index];
-    frame = (frame == 0 ? novelties_.size() : frame) - 1;
+    frame = before(frame);
   }
   if (index == none) return std::nullopt;
   const std::uint32_t row = steps_[frame * width_ + index].row;

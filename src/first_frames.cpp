@@ -44,9 +44,8 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
   const std::uint64_t began = newest - (count - 1);
   if (count_ == 0 || began <= first_ || began > first_ + count_) return count;
   auto frame = static_cast<std::size_t>(began - first_);
-  const PlaceOrder& order = map.order();
   std::size_t row = trace[count - 1].row;
-  const CandidateRun session = order.around(row);
+  const CandidateRun session = map.order().around(row);
   std::size_t at = count;
   std::size_t stays = 0;
   while (frame-- > 0 && at < trace.size()) {
@@ -58,9 +57,7 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
     double best = 0.0;
     std::size_t from = row;
     for (std::size_t by = 0; by < scene.moves().size() && row >= session.first + by; ++by) {
-      ++sketches;
-      const double share =
-          map.rows().look_closely(sketch(frame), order.slot(row - by)) / DescriptorRows::close_bits;
+      const double share = share_of_bits(map, frames.newest, row - by, sketches);
       const double likely = scene.moves()[by] * exponential(scene.likeness(share));
       if (likely <= best) continue;
       best = likely;

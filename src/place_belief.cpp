@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "seqloop/detail/portable_math.hpp"
-#include "seqloop/detail/sketch.hpp"
 
 namespace seqloop {
 namespace {
@@ -99,14 +98,6 @@ Moves moves_at(double pace) {
     moves[by] = (1.0 - faster) * of[slower][by] + faster * of[slower + 1][by];
   }
   return moves;
-}
-
-/// How far two frames lie apart, squared: no less than .3 of what frames do that have nothing to do
-/// with each other. @param mean share of bits in which those differ
-double way_between(const DescriptorRows& frames, std::size_t a, std::size_t b, double mean) {
-  constexpr double least = 0.3;
-  return std::max(squared_chord(frames.look_closely(frames, a, b) / DescriptorRows::close_bits),
-                  least * squared_chord(mean));
 }
 
 bool used(const MatcherConfig& config) { return config.decision == Decision::probability; }
@@ -347,12 +338,10 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const QueryHistory& queries = *view.queries;
   const std::size_t newest = queries.row_of(view.newest);
   FramePair frames{queries.rows().close_sketch(newest), std::nullopt};
-  double way = 0.0;
   if (view.newest >= view.oldest + frames_apart) {
     const std::size_t before = queries.row_of(view.newest - frames_apart);
     frames.before = queries.rows().close_sketch(before);
-    way = way_between(queries.rows(), newest, before, scene.mean);
-    ++sketches_;
+    frames.way = squared_way(queries.rows(), newest, before, sketches_);
   }
   std::array<double, most> gains;
   const double w = scene.novelty;
@@ -366,7 +355,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     at.told = w * l;
     at.step = unknown;
     if (const auto from = came_from(order, at); from && frames.before) {
-      at.step = in_step(scene, *view.map, frames, way, gain, *from, sketches_);
+      at.step = in_step(scene, *view.map, frames, gain, *from, sketches_);
       at.in_step += most_forgotten * (at.step - at.in_step);
     }
     at.mass *= exponential(at.told);

@@ -29,10 +29,8 @@ News news_of(const SceneView& view, double mean, std::size_t& sketches) {
   if (frames == 0) return {weight(highest), weight(highest)};
   const DescriptorRows& queries = view.queries->rows();
   const auto squared = [&](std::size_t back) {
-    ++sketches;
-    return squared_chord(queries.look_closely(queries, view.queries->row_of(view.newest),
-                                              view.queries->row_of(view.newest - back)) /
-                         DescriptorRows::close_bits);
+    return squared_way(queries, view.queries->row_of(view.newest),
+                       view.queries->row_of(view.newest - back), sketches);
   };
   const double before = squared(1);
   const double cosine = std::max(0.0, 1.0 - before / 2.0);
@@ -98,18 +96,28 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
                logarithm(exponentials / n) + above, news.change, news.novelty};
 }
 
+double squared_way(const DescriptorRows& frames, std::size_t a, std::size_t b,
+                   std::size_t& sketches) noexcept {
+  ++sketches;
+  return squared_chord(frames.look_closely(frames, a, b) / DescriptorRows::close_bits);
+}
+
+double share_of_bits(const PlaceMap& map, CloseSketch frame, std::size_t row,
+                     std::size_t& sketches) noexcept {
+  ++sketches;
+  return map.rows().look_closely(frame, map.order().slot(row)) / DescriptorRows::close_bits;
+}
+
 RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, const FramePair& frames,
                 std::size_t row, std::size_t& sketches) noexcept {
-  const PlaceOrder& order = map.order();
-  const auto share = [&](CloseSketch sketch, std::size_t there) {
-    ++sketches;
-    return map.rows().look_closely(sketch, order.slot(there)) / DescriptorRows::close_bits;
+  const auto share = [&](CloseSketch frame, std::size_t there) {
+    return share_of_bits(map, frame, there, sketches);
   };
   const double here = share(frames.newest, row);
   double before = 0.0;
   double contrast = 0.0;
   if (frames.before) {
-    const CandidateRun session = order.around(row);
+    const CandidateRun session = map.order().around(row);
     before = share(*frames.before, row);
     double around = 2.0 * before;
     double weight = 2.0;
@@ -127,17 +135,17 @@ RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, const
   return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast, here, before};
 }
 
-double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames, double way,
-               const RowGain& at, std::size_t from, std::size_t& sketches) noexcept {
-  const auto squared = [&](CloseSketch sketch) {
-    ++sketches;
-    return squared_chord(map.rows().look_closely(sketch, map.order().slot(from)) /
-                         DescriptorRows::close_bits);
+double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames, const RowGain& at,
+               std::size_t from, std::size_t& sketches) noexcept {
+  const auto squared = [&](CloseSketch frame) {
+    return squared_chord(share_of_bits(map, frame, from, sketches));
   };
+  // What they are apart that have nothing to do with each other.
+  const double apart = squared_chord(scene.mean);
   const double together = squared_chord(at.here) + squared(*frames.before);
   const double across = squared_chord(at.before) + squared(frames.newest);
-  const double along = (across - together) / (2.0 * way);
-  const double alike = std::max(0.0, 1.0 - together / (2.0 * squared_chord(scene.mean)));
+  const double along = (across - together) / (2.0 * std::max(frames.way, 0.3 * apart));
+  const double alike = std::max(0.0, 1.0 - together / (2.0 * apart));
   return along - 0.4 * alike - std::min(0.06, 0.25 * alike);
 }
 

@@ -74,6 +74,10 @@ class BeliefTraces {
     float in_step;
   };
 
+  [[nodiscard]] std::size_t before(std::size_t frame) const noexcept {
+    return (frame == 0 ? novelties_.size() : frame) - 1;
+  }
+
   std::size_t width_;
   std::size_t frames_ = 0;      // that are held
   std::size_t newest_ = 0;      // where it is

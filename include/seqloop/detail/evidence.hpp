@@ -30,7 +30,7 @@ inline constexpr double least_odds = 2.0;
 }
 
 /// The log-odds that the row is right, by a trace that has been followed for long: a logistic
-/// regression. Source: src/README.md, section 6.4.
+/// regression, but for the .6 and 15 of the look. Source: src/README.md, section 6.4.
 [[nodiscard]] inline double log_odds_followed(const Evidence& e) noexcept {
   return -5.879 + 0.104 * e.odds + 0.89 * e.lead + log_odds_of_look(e) + 0.808 * e.age +
          8.984 * e.margin;

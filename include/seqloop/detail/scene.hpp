@@ -59,7 +59,16 @@ inline constexpr std::size_t frames_apart = 8;
 struct FramePair {
   CloseSketch newest;
   std::optional<CloseSketch> before;
+  double way = 0.0;  ///< between them, as `squared_way` has it
 };
+
+/// Square of the distance between two frames. @param sketches grows by one
+[[nodiscard]] double squared_way(const DescriptorRows& frames, std::size_t a, std::size_t b,
+                                 std::size_t& sketches) noexcept;
+
+/// Share of bits in which a frame differs from a row of the map. @param sketches grows by one
+[[nodiscard]] double share_of_bits(const PlaceMap& map, CloseSketch frame, std::size_t row,
+                                   std::size_t& sketches) noexcept;
 
 /// What a frame says for a row of the map.
 struct RowGain {
@@ -86,13 +95,11 @@ inline constexpr std::size_t sketches_of_in_step = 2;
 /// newest: .54 if they are the same pictures, 0 if they have nothing to do with them, and less
 /// where they look like the frames but change in another way. Source: src/README.md, section 6.2.
 /// @param frames both
-/// @param way    between them, the square of a distance, above 0
 /// @param at     of the trace's row at the newest frame
 /// @param from   the trace's row at the frame before
 /// @param sketches grows by the pairs compared
 [[nodiscard]] double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames,
-                             double way, const RowGain& at, std::size_t from,
-                             std::size_t& sketches) noexcept;
+                             const RowGain& at, std::size_t from, std::size_t& sketches) noexcept;
 
 /// Makes the scene of each frame. Source: src/README.md, sections 6.1 and 6.2.
 class SceneGauge {
