@@ -100,6 +100,18 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_TRUE(test::says(refused(""), "empty"));
 }
 
+TEST(MatchList, AllBadValuesOfALineAreToldAtOnce) {
+  const std::string said = test::setup_error([] {
+    (void)answers(R"({"answers":[{"frame":"x","match":-1,"probability":2},3]})"
+                  "\n");
+  });
+  for (const std::string what :
+       {"'frame' is no whole number", "'match' is no whole number", "no 'uniqueness'",
+        "'probability' is not from 0 to 1", "'answers' holds what is no JSON object"}) {
+    EXPECT_TRUE(test::says(said, "r.jsonl:1: " + what));
+  }
+}
+
 TEST(MatchList, AllBadCellsOfARowAreToldAtOnce) {
   const std::string said = test::setup_error([] {
     (void)answers("query,match,uniqueness,probability,accepted\nx,-1,high,2,yes\nx,-1,high,?,1\n");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "evaluation/csv.hpp"
@@ -20,12 +21,12 @@ using Json = nlohmann::json;
 /// Answers, each to another query.
 class Answers {
  public:
-  /// Throws SetupError: the query has an answer.
-  void add(Answer answer, const std::string& where) {
-    if (!queries_.insert(answer.query).second) {
-      throw SetupError({where, "query " + std::to_string(answer.query) + " is answered twice"});
-    }
+  /// @return what is wrong with it: its query has an answer
+  [[nodiscard]] std::optional<std::string> add(Answer answer) {
+    if (!queries_.insert(answer.query).second)
+      return "query " + std::to_string(answer.query) + " is answered twice";
     answers_.push_back(answer);
+    return std::nullopt;
   }
 
   [[nodiscard]] std::vector<Answer> take() { return std::move(answers_); }
@@ -46,7 +47,8 @@ std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) 
       answer.probability = row.number_within(*probability, 0.0, 1.0);
     }
     if (accepted) answer.accepted = row.flag(*accepted);
-    if (row.faults().empty()) answers.add(answer, row.where());
+    if (!row.faults().empty()) return;
+    if (const auto wrong = answers.add(answer)) throw SetupError({row.where(), *wrong});
   });
   return answers.take();
 }
@@ -56,64 +58,82 @@ class Lines {
  public:
   Lines(std::string name, std::string swept) : name_(std::move(name)), swept_(std::move(swept)) {}
 
+  /// Throws SetupError with all that is wrong with the line.
   void take(std::string_view line, std::size_t number) {
     where_ = name_ + ":" + std::to_string(number);
-    const Json json = Json::parse(line, nullptr, false);
-    if (!json.is_object()) refuse("is no JSON object");
-    const auto several = json.find("answers");
-    if (several == json.end()) return add(json);
-    if (!several->is_array()) refuse("'answers' is no array");
-    for (const Json& answer : *several) {
-      if (!answer.is_object()) refuse("'answers' holds what is no JSON object");
-      add(answer);
-    }
+    faults_.clear();
+    add_all(Json::parse(line, nullptr, false));
+    if (!faults_.empty()) throw SetupError(faults_);
   }
 
   Answers answers;
 
  private:
+  void add_all(const Json& json) {
+    if (!json.is_object()) return blame("is no JSON object");
+    const auto several = json.find("answers");
+    if (several == json.end()) return add(json);
+    if (!several->is_array()) return blame("'answers' is no array");
+    for (const Json& answer : *several) {
+      if (answer.is_object()) {
+        add(answer);
+      } else {
+        blame("'answers' holds what is no JSON object");
+      }
+    }
+  }
+
   void add(const Json& answer) {
-    const Json& query = at(answer, "frame");
-    const Json& match = at(answer, "match");
-    const Json& uncertainty = at(answer, swept_);
-    if (query.is_null() || match.is_null()) return;
-    Answer found{whole(query, "frame"), whole(match, "match"), number(uncertainty, swept_)};
-    if (const auto said = answer.find("probability"); said != answer.end()) {
-      found.probability = number(*said, "probability");
+    const std::size_t before = faults_.size();
+    const std::optional<std::uint64_t> query = whole(answer, "frame");
+    const std::optional<std::uint64_t> match = whole(answer, "match");
+    Answer found{query.value_or(0), match.value_or(0), number(answer, swept_)};
+    if (answer.contains("probability")) {
+      found.probability = number(answer, "probability");
       if (found.probability < 0.0 || found.probability > 1.0)
-        refuse("'probability' is not from 0 to 1");
+        blame("'probability' is not from 0 to 1");
     }
     if (const auto status = answer.find("status"); status != answer.end()) {
       found.accepted = *status == "match";
     }
-    answers.add(found, where_);
+    if (!query || !match || faults_.size() > before) return;
+    if (const auto wrong = answers.add(found)) blame(*wrong);
   }
 
   /// NaN where it is null.
-  [[nodiscard]] double number(const Json& number, const std::string& key) const {
-    if (number.is_null()) return std::numeric_limits<double>::quiet_NaN();
-    if (!number.is_number()) refuse("'" + key + "' is no number");
-    return number.get<double>();
+  double number(const Json& answer, const std::string& key) {
+    const Json& number = at(answer, key);
+    if (number.is_number()) return number.get<double>();
+    if (!number.is_null()) blame("'" + key + "' is no number");
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
-  [[nodiscard]] const Json& at(const Json& answer, const std::string& key) const {
-    const auto found = answer.find(key);
-    if (found == answer.end()) refuse("no '" + key + "': is this what `run` wrote?");
-    return *found;
-  }
-
-  [[nodiscard]] std::uint64_t whole(const Json& number, const std::string& key) const {
+  /// Nothing where it is null.
+  std::optional<std::uint64_t> whole(const Json& answer, const std::string& key) {
     constexpr std::uint64_t most = std::uint64_t{1} << 62U;
-    if (!number.is_number_unsigned() || number.get<std::uint64_t>() > most)
-      refuse("'" + key + "' is no whole number up to 2^62");
-    return number.get<std::uint64_t>();
+    const Json& number = at(answer, key);
+    if (number.is_null()) return std::nullopt;
+    if (number.is_number_unsigned() && number.get<std::uint64_t>() <= most)
+      return number.get<std::uint64_t>();
+    blame("'" + key + "' is no whole number up to 2^62");
+    return std::nullopt;
   }
 
-  [[noreturn]] void refuse(const std::string& why) const { throw SetupError({where_, why}); }
+  /// Null where it is missing.
+  const Json& at(const Json& answer, const std::string& key) {
+    static const Json null;
+    const auto found = answer.find(key);
+    if (found != answer.end()) return *found;
+    blame("no '" + key + "': is this what `run` wrote?");
+    return null;
+  }
+
+  void blame(std::string why) { faults_.push_back({where_, std::move(why)}); }
 
   std::string name_;
   std::string swept_;
   std::string where_;
+  Faults faults_;
 };
 
 std::vector<Answer> from_lines(std::string_view text, const std::string& name,
