@@ -113,6 +113,21 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
         expect(len(listeners[name].messages()) >= least, f"{name} came too")
     sessions(seqloop, places, pictures[:80], fast_end, work / "sessions")
     begun_again(seqloop, pictures, fast_end, work / "again")
+    broken(seqloop, fast_end, work / "broken")
+
+
+def broken(seqloop: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:
+    """A camera of which no picture can be read has failed, though its frames came."""
+    work.mkdir()
+    run = Run(seqloop, work)
+    publisher, delay = heard(run, fast_end, COMPRESSED)
+    for i in range(5):
+        publisher.send(ros.compressed_image(stamp(i, 20), b"\xff\xd8\xff\xe0" + b"x" * 40), delay + i / 20)
+    expect(publisher.end() == "", "Fast DDS published all")
+    run.wait_until(lambda lines: len(frames_of(lines)) >= 3)
+    frames = frames_of(run.end(expected=1))
+    expect(all(frame["status"] == "frame_error" for frame in frames)
+           and "none of its frames could be read" in run.said.read_text(), f"{len(frames)} broken frames, and said so")
 
 
 def sessions(seqloop: str, places: pathlib.Path, pictures: list[pathlib.Path], fast_end: pathlib.Path,

@@ -64,11 +64,11 @@ class Run:
         """Until the last of so many messages is there; not for ever, since it may be lost."""
         self.wait_until(lambda lines: (frames := frames_of(lines)) and frames[-1]["sequence"] >= sent - 1, 10.0)
 
-    def end(self) -> list[dict]:
-        """@return the lines"""
+    def end(self, expected: int = 0) -> list[dict]:
+        """@param expected the exit code. @return the lines"""
         self.process.send_signal(signal.SIGTERM)
         code = self.process.wait()
-        if code != 0:
+        if code != expected:
             sys.exit(f"run ended with {code}: {self.said.read_text()}")
         return [json.loads(line) for line in self.lines.read_text().splitlines()]
 

@@ -318,6 +318,7 @@ void run(const RunSettings& settings, Faults faults) {
     attempt.fail(fmt::format("{}: no frame for {:g} seconds: given up", settings.source.string(),
                              settings.give_up_s));
   }
+  if (none_readable) attempt.fail(settings.source.string() + ": none of its frames could be read");
   attempt.end();
 }
 
