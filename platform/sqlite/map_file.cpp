@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "sqlite/state.hpp"
+#include "sqlite/write_ahead_log.hpp"
 
 namespace seqloop::sqlite {
 namespace {
@@ -61,8 +62,13 @@ void check_kind(const fs::path& path, Database& database) {
 
 /// Before anything is read. Throws SetupError.
 void check_log(const fs::path& path, const Database& database) {
+  const std::string log = path.string() + "-wal";
+  if (is_damaged_log(log)) {
+    throw SetupError({log, "is damaged: the map has lost of what was saved last",
+                      "`seqloop map recover` copies what is whole into a new file"});
+  }
   if (!database.is_beside_foreign_log()) return;
-  throw SetupError({path.string() + "-wal",
+  throw SetupError({log,
                     "is not the log of the map beside it, but of one that had its name and was "
                     "not closed: the two would be mixed",
                     "remove it; or put the map that it belongs to back, to have what is in both"});

@@ -18,6 +18,7 @@
 #include "sqlite/raw_rows.hpp"
 #include "sqlite/schema.hpp"
 #include "sqlite/state.hpp"
+#include "sqlite/write_ahead_log.hpp"
 
 namespace seqloop::sqlite {
 namespace {
@@ -175,6 +176,10 @@ class WithLog {
       if (*tail != '\0' && !is_used(tail)) continue;
       fs::copy_file(in.string() + tail, path_.string() + tail,
                     fs::copy_options::overwrite_existing);
+    }
+    if (const fs::path log = path_.string() + "-wal"; is_damaged_log(log)) {
+      put_log_into(path_, log);
+      fs::remove(log);
     }
     try {
       Database database(path_, SQLITE_OPEN_READWRITE);

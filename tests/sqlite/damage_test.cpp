@@ -408,5 +408,116 @@ TEST(MapRecovery, TakesTheLogWithTheFile) {
   EXPECT_FALSE(fs::exists(folder.path() / "out.copy"));
 }
 
+/// A map of ten places, and in a log the eight batches of ten that a killed writer saved after
+/// them.
+class KilledMap {
+ public:
+  static constexpr std::size_t batches = 8;
+
+  KilledMap() {
+    const fs::path open = folder_.path() / "open.seqloop";
+    { MapFile::open(open, test::sample_form()).begin_session("a", 0, ""); }
+    MapFile map = MapFile::open(open, std::nullopt);
+    for (std::size_t i = 0; i < batches; ++i) {
+      test::save_sample(map, 1, 0, 10);
+      ends.push_back(fs::file_size(open.string() + "-wal"));
+    }
+    fs::copy(open, file);
+    log = test::read_all(open.string() + "-wal");
+    write(log);
+  }
+
+  void write(const std::string& bytes) const { folder_.write("killed.seqloop-wal", bytes); }
+
+  /// How many places are read; what is said instead of them.
+  [[nodiscard]] std::string read(bool to_write) const {
+    try {
+      const MapFile map = to_write ? MapFile::open(copy(), {}) : MapFile::read_only(copy());
+      return std::to_string(map.sessions().at(0).places);
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+  }
+
+  [[nodiscard]] std::uint64_t recovered() const {
+    const fs::path out = folder_.path() / "out";
+    fs::remove(out);
+    return sqlite::recover(file, out).places;
+  }
+
+ private:
+  test::TemporaryFolder folder_{in_memory()};
+
+ public:
+  const fs::path file = folder_.path() / "killed.seqloop";
+  std::string log;
+  std::vector<std::size_t> ends;  ///< bytes of the log after each batch
+
+ private:
+  /// Opening changes it.
+  [[nodiscard]] fs::path copy() const {
+    const fs::path to = folder_.path() / "copy.seqloop";
+    for (const char* tail : {"", "-wal"}) {
+      fs::copy(file.string() + tail, to.string() + tail, fs::copy_options::overwrite_existing);
+    }
+    fs::remove(to.string() + "-shm");
+    return to;
+  }
+};
+
+TEST(MapLog, ThatIsCutOffHasLostItsLastBatchOnly) {
+  const KilledMap map;
+  for (std::size_t bytes = 0; bytes <= map.log.size(); bytes += 1000) {
+    SCOPED_TRACE(bytes);
+    std::string torn = map.log.substr(0, bytes);
+    const auto whole = static_cast<std::size_t>(
+        std::ranges::count_if(map.ends, [&](std::size_t end) { return end <= bytes; }));
+    if (whole < 1) continue;
+    map.write(torn);
+    EXPECT_EQ(map.read(false), std::to_string(10 * whole));
+    // What was on its way to the disk stands there in part.
+    torn.resize(map.log.size());
+    map.write(torn);
+    EXPECT_EQ(map.read(true), std::to_string(10 * whole));
+  }
+}
+
+TEST(MapLog, DamagedBetweenItsBatchesIsNamedAndRecovered) {
+  const KilledMap map;
+  EXPECT_EQ(map.read(false), "80");
+  EXPECT_EQ(map.recovered(), 80U);
+  constexpr std::size_t head = 32;
+  constexpr std::size_t frame = 24 + page;
+  std::size_t named = 0;
+  std::uint64_t most = 0;
+  for (std::size_t first = 0; first < map.log.size(); first = first < head ? head : first + frame) {
+    for (const std::size_t in : {1U, 9U, 17U, 26U, 4000U}) {
+      if (first + in >= (first < head ? head : map.log.size())) continue;
+      SCOPED_TRACE(first + in);
+      std::string bytes = map.log;
+      bytes[first + in] ^= 4;
+      map.write(bytes);
+      const auto before = static_cast<std::size_t>(
+          std::ranges::count_if(map.ends, [&](std::size_t end) { return end <= first; }));
+      for (const bool to_write : {false, true}) {
+        const std::string said = map.read(to_write);
+        if (before + 2 < KilledMap::batches) {
+          EXPECT_TRUE(test::says(said, "copy.seqloop-wal: is damaged"));
+          EXPECT_TRUE(test::says(said, "seqloop map recover"));
+        } else if (before + 2 > KilledMap::batches) {
+          EXPECT_EQ(said, std::to_string(10 * before)) << "it may have been cut off";
+        }
+      }
+      if (before + 2 >= KilledMap::batches) continue;
+      ++named;
+      const std::uint64_t found = map.recovered();
+      EXPECT_GE(found, 10 * before);
+      most = std::max(most, found);
+    }
+  }
+  EXPECT_GT(named, 50U);
+  EXPECT_EQ(most, 80U) << "of what was damaged once most was written again";
+}
+
 }  // namespace
 }  // namespace seqloop
