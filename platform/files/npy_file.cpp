@@ -10,6 +10,7 @@
 #include <string>
 
 #include "files/npy_header.hpp"
+#include "seqloop/detail/counted.hpp"
 #include "seqloop/difference.hpp"
 #include "seqloop/fault.hpp"
 
@@ -94,11 +95,19 @@ void check_finite(const Matrix& matrix, const std::string& name) {
   const auto bad = std::find_if_not(matrix.values.begin(), matrix.values.end(),
                                     [](float value) { return std::isfinite(value); });
   const auto place = static_cast<std::size_t>(bad - matrix.values.begin());
-  throw SetupError(Fault{name,
-                         std::string("holds ") + (std::isnan(*bad) ? "NaN" : "infinity") +
-                             " in row " + std::to_string(place / matrix.columns) + ", column " +
-                             std::to_string(place % matrix.columns) + " (both from 0)",
-                         "describe that frame again or leave it out"});
+  const std::size_t first = place / matrix.columns;
+  std::size_t more = 0;
+  for (std::size_t row = first + 1; row < matrix.rows; ++row) {
+    const std::span<const float> values = matrix.values;
+    if (!all_finite(values.subspan(row * matrix.columns, matrix.columns))) ++more;
+  }
+  throw SetupError(
+      Fault{name,
+            std::string("holds ") + (std::isnan(*bad) ? "NaN" : "infinity") + " in row " +
+                std::to_string(first) + ", column " + std::to_string(place % matrix.columns) +
+                " (both from 0)" +
+                (more > 0 ? ", and such values in " + counted(more, "row") + " more" : ""),
+            "describe the drive again, or make it a row of zeros: a frame that could not be read"});
 }
 
 NpyWriter::NpyWriter(const std::filesystem::path& path, std::size_t columns)

@@ -176,7 +176,9 @@ TEST(NpyFile, NamesThePlaceOfANumberThatIsNotFinite) {
   bad[4] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(says(fault_of(npy(good_dictionary, bytes_of(bad))), "NaN in row 1, column 1"));
   bad[2] = -std::numeric_limits<float>::infinity();
-  EXPECT_TRUE(says(fault_of(npy(good_dictionary, bytes_of(bad))), "infinity in row 0, column 2"));
+  const std::string both = fault_of(npy(good_dictionary, bytes_of(bad)));
+  EXPECT_TRUE(says(both, "infinity in row 0, column 2"));
+  EXPECT_TRUE(says(both, "such values in 1 row more"));
 }
 
 // Bad input: 20,000 seeded mutations of a good file.

@@ -395,6 +395,7 @@ TEST_F(BadInput, NoTwoOutputsAreOne) {
   }
   expect_refused(run + "--summary both >both", {"summary: is the same file as --out"});
   expect_refused(run + "--pictures p --out same/matches.png", {"is the same file as --out"});
+  expect_refused(run + "--out new --pictures new", {"pictures: is the same file as --out"});
   EXPECT_EQ(Program::run(run + "--out /dev/null --summary - >/dev/null").exit_code, 0);
 }
 

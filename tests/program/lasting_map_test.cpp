@@ -66,6 +66,20 @@ class LastingMaps : public test::Program {
   }
 };
 
+TEST_F(LastingMaps, NothingIsWrittenUnderTheNamesOfAMapsOwnFiles) {
+  const std::string words = "belongs to the map m.seqloop";
+  expect_refused("match --query first.npy --map m.seqloop --out m.seqloop-wal", words);
+  expect_done("run --source first.npy --map m.seqloop --out f.jsonl");
+  for (const char* const tail : {"-wal", "-shm", "-journal"}) {
+    expect_refused(
+        "run --source again.npy --map m.seqloop --read-only --out a --summary ./m.seqloop" +
+            std::string(tail),
+        words.substr(0, 19));
+    expect_refused("report f.jsonl --out m.seqloop" + std::string(tail), words);
+  }
+  expect_done("match --query first.npy --out other.npy-wal");
+}
+
 TEST_F(LastingMaps, ADriveFindsWhatEarlierRunsHaveSaved) {
   expect_done("run --source other.npy --map m.seqloop --session other --out o.jsonl");
   expect_done("run --source first.npy --map m.seqloop --session first --out f.jsonl");
@@ -244,6 +258,8 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
   EXPECT_NE(drawn.err.find("difference_matrix.png, matches.png"), std::string::npos) << drawn.err;
   const cv::Mat sheet = cv::imread(file("drawn/matches.png"));
   EXPECT_GT(sheet.cols, 2 * 320) << "a frame and a place, both as wide";
+  expect_done("run --source again.npy --reference first.npy --out n.jsonl --pictures drawn");
+  EXPECT_FALSE(std::filesystem::exists(file("drawn/matches.png"))) << "it was another run's";
   const test::Outcome unseen =
       run("run --source drive --map without.seqloop --read-only --pictures plain "
           "--out drive/plain.jsonl");

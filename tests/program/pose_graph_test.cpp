@@ -78,6 +78,10 @@ TEST(Odometry, WhatIsNoneIsRefused) {
   EXPECT_TRUE(test::says(refusal(good + "2 nan 0 0 0 0 0 1\n"), "line 2 is no pose"));
   EXPECT_TRUE(test::says(refusal(good + "2 0 0 0 0 0 0 0\n"), "line 2 is no pose"));
   EXPECT_TRUE(test::says(refusal(good + good), "line 2 is not later than the one before"));
+  const std::string several = refusal(good + "x\n" + good + "2 0 0 0 0 0 0 0\n");
+  for (const char* what : {"line 2 is no pose", "line 3 is not later", "line 4 is no pose"}) {
+    EXPECT_TRUE(test::says(several, what));
+  }
 }
 
 TEST(Odometry, FromABag) {

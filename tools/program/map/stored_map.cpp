@@ -44,14 +44,22 @@ bool wants_pictures(const sqlite::MapForm& map, const sqlite::MapForm& drive) {
   return drive.describer == "descriptors" && map.describer != drive.describer;
 }
 
+/// The form of a map, if it can be read.
+std::optional<sqlite::MapForm> form_at(const std::filesystem::path& path) {
+  try {
+    return sqlite::MapFile::read_only(path).form();
+  } catch (const SetupError&) {
+    return std::nullopt;
+  }
+}
+
 /// Opens a map to write. Throws SetupError.
 sqlite::MapFile opened_to_write(const std::filesystem::path& path, const sqlite::MapForm& form) {
   try {
     return sqlite::MapFile::open(path, form);
   } catch (const SetupError& error) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) throw;
-    if (!wants_pictures(sqlite::MapFile::read_only(path).form(), form)) throw;
+    const auto there = form_at(path);
+    if (!there || !wants_pictures(*there, form)) throw;
     Faults faults = error.faults();
     faults.back().remedy = of_pictures;
     throw SetupError(std::move(faults));

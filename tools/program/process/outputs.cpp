@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/opencv/image_folder_source.hpp"
@@ -66,8 +69,8 @@ std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
   const Target target(output.path);
   const Target there(other.path);
   if (other.access != Access::reads) {
-    const bool files = output.access == Access::writes && other.access == Access::writes;
-    if (!files || !same(target, there)) return std::nullopt;
+    const bool folders = output.access == Access::fills && other.access == Access::fills;
+    if (folders || !same(target, there)) return std::nullopt;
     return Fault{output.flag, "is the same file as --" + other.flag, "name another one"};
   }
   if (output.access == Access::fills) {
@@ -92,11 +95,41 @@ std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
       "choose another name"};
 }
 
+bool is_database(const fs::path& path) {
+  constexpr std::string_view begins = "SQLite format 3";
+  std::array<char, begins.size()> head{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(head.data(), head.size()) && std::ranges::equal(head, begins);
+}
+
+/// Why an output is in the way of a map; nothing where it is not. While a map is written, files
+/// with such names belong to it.
+std::optional<Fault> clash_with_map(const FileUse& output, const std::vector<FileUse>& uses) {
+  for (const std::string_view tail : {"-wal", "-shm", "-journal"}) {
+    const std::string name = output.path.string();
+    if (!name.ends_with(tail)) continue;
+    const fs::path map = name.substr(0, name.size() - tail.size());
+    const bool is_named = std::ranges::any_of(uses, [&map](const FileUse& use) {
+      return use.flag == "map" && same(Target(use.path), Target(map));
+    });
+    if (!is_named && !is_database(map)) continue;
+    return Fault{output.flag,
+                 fmt::format("{} belongs to the map {}: it keeps there what is not in it yet", name,
+                             map.string()),
+                 "choose another name"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void refuse_overwriting(Faults& faults, const std::vector<FileUse>& uses) {
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (uses[i].access == Access::reads || uses[i].path.empty()) continue;
+    if (std::optional<Fault> fault = clash_with_map(uses[i], uses)) {
+      faults.push_back(std::move(*fault));
+      continue;
+    }
     for (std::size_t k = 0; k < uses.size(); ++k) {
       // Of two outputs the one that is named last is the one to change.
       const bool told_of = uses[k].access != Access::reads && k >= i;

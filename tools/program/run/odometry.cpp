@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "evaluation/line_faults.hpp"
 #include "files/text_file.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/bags/odometry.hpp"
@@ -89,6 +90,7 @@ std::optional<Pose> Odometry::at(double time_s) const noexcept {
 
 Odometry parse_tum(const std::string& text, const std::string& name, double start_s) {
   std::vector<Sample> samples;
+  evaluation::LineFaults faults(name);
   std::size_t number = 0;
   for (std::size_t start = 0; start < text.size();) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
@@ -103,13 +105,16 @@ Odometry parse_tum(const std::string& text, const std::string& name, double star
     sample.time_s = values[0] - start_s;
     std::copy_n(values.begin() + 1, 3, sample.pose.position.begin());
     std::copy_n(values.begin() + 4, 4, sample.pose.orientation.begin());
-    if (!whole || !make_unit(sample.pose.orientation))
-      throw SetupError(
+    if (!whole || !make_unit(sample.pose.orientation)) {
+      faults.add(
           {name, fmt::format("line {} is no pose", number), "a line is: time x y z qx qy qz qw"});
-    if (!samples.empty() && sample.time_s <= samples.back().time_s)
-      throw SetupError({name, fmt::format("line {} is not later than the one before", number)});
-    samples.push_back(sample);
+    } else if (!samples.empty() && sample.time_s <= samples.back().time_s) {
+      faults.add({name, fmt::format("line {} is not later than the one before", number)});
+    } else {
+      samples.push_back(sample);
+    }
   }
+  faults.refuse();
   if (samples.size() < 2) throw SetupError({name, "holds fewer than two poses"});
   return Odometry(std::move(samples));
 }

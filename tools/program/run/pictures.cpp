@@ -138,7 +138,11 @@ bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>&
                fitting(said, right->second.cols));
     pairs.push_back(pair);
   }
-  if (pairs.empty()) return false;
+  if (pairs.empty()) {
+    // One of an earlier run would stand beside this one's matrix.
+    std::filesystem::remove(folder / sheet_name);
+    return false;
+  }
   // Two columns of equal pairs; an odd one is completed with white.
   cv::Mat sheet;
   for (std::size_t i = 0; i < pairs.size(); i += 2) {

@@ -137,11 +137,11 @@ void exchange(const MapSettings& settings, bool exports) {
 
 void change(const MapSettings& settings) {
   const fs::path file = settings.words[1];
-  std::uintmax_t before = 0;
+  std::error_code missing;
+  const std::uintmax_t before = fs::file_size(file, missing) + log_bytes(file);
   std::string left;
   {
     MapFile map = MapFile::open(file, std::nullopt);
-    before = fs::file_size(file) + log_bytes(file);
     if (settings.words[0] == "forget") map.forget(settings.words[2]);
     if (settings.words[0] == "compact") map.compact();
     left = content_of(map);

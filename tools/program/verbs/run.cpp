@@ -259,7 +259,8 @@ void run(const RunSettings& settings, Faults faults) {
       summary.frames() > 0 && summary.frames() == summary.at(Gate::frame_error);
   if (none_readable && setup.recording) {
     if (setup.map) setup.map->discard();
-    throw SetupError({settings.source.string(), "none of its frames can be read"});
+    throw SetupError(
+        {settings.source.string(), "none of its frames can be read or shows anything"});
   }
   if (fleet) fleet->finish(rest);
   std::optional<std::string> unsaved;
@@ -318,7 +319,10 @@ void run(const RunSettings& settings, Faults faults) {
     attempt.fail(fmt::format("{}: no frame for {:g} seconds: given up", settings.source.string(),
                              settings.give_up_s));
   }
-  if (none_readable) attempt.fail(settings.source.string() + ": none of its frames could be read");
+  if (none_readable) {
+    attempt.fail(settings.source.string() +
+                 ": none of its frames could be read or showed anything");
+  }
   attempt.end();
 }
 

@@ -74,7 +74,7 @@ Verb run_verb() {
   add_matcher_options(verb.options, settings->matcher);
   verb.options.section("Matching");
   verb.options.count("max-places", settings->max_places,
-                     "room in the map [as long as the drive, 20000 where that is not known]");
+                     "room in the map [0: as long as the drive, 20000 where that is not known]");
   add_loop_options(verb.options, settings->loop);
   add_camera_options(verb.options, settings->camera);
   verb.options.number("give-up-s", settings->give_up_s,

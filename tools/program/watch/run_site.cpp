@@ -306,8 +306,9 @@ http::Reply RunSite::control(const Json& wish) {
   } else if (what == "threshold") {
     return set_threshold(wish);
   } else if (what == "mark") {
-    if (!view_.mark(wish.value("name", "")))
-      return fault(409, "there is no frame yet, or no room for more marks");
+    const std::string name = wish.value("name", "");
+    if (name.empty()) return fault(400, "name is what the mark is called");
+    if (!view_.mark(name)) return fault(409, "there is no frame yet, or no room for more marks");
   } else {
     return fault(400, "do is pause, resume, stop, save, threshold or mark");
   }
