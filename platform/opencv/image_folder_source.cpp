@@ -66,9 +66,12 @@ Listing list_folder(const fs::path& folder) {
   if (!fs::is_directory(status)) throw SetupError(Fault{name, "is not a folder"});
   Listing listing;
   fs::directory_iterator entries(folder, error);
-  for (; !error && entries != fs::directory_iterator(); entries.increment(error))
-    (is_picture(*entries) ? listing.pictures : listing.others)
-        .push_back(entries->path().filename().string());
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    const std::string entry = entries->path().filename().string();
+    // What is being written here has no name yet.
+    if (entry.starts_with('.') && entry.find(".partial-") != std::string::npos) continue;
+    (is_picture(*entries) ? listing.pictures : listing.others).push_back(entry);
+  }
   if (error)
     throw SetupError(Fault{name, "cannot be read: " + error.message(), "check its permissions"});
   std::sort(listing.pictures.begin(), listing.pictures.end(), natural_less);

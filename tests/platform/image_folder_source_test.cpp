@@ -139,7 +139,8 @@ TEST(ImageFolderSource, NotesWhatIsLeftOutAndSizesThatDiffer) {
   folder.write("2.png", encoded(textured(8, 6), ".png"));
   ImageFolderSource clean(folder.path(), false);
   EXPECT_TRUE(clean.notes().empty());
-  for (const char* name : {"truth.csv", ".hidden.png", "b.txt", "a.txt"}) folder.write(name, "");
+  for (const char* name : {"truth.csv", ".hidden.png", "b.txt", "a.txt", ".m.csv.partial-7"})
+    folder.write(name, "");
   std::filesystem::create_directory(folder.path() / "folder.png");
   ImageFolderSource source(folder.path(), false);
   ASSERT_EQ(source.notes().size(), 1U);
