@@ -239,9 +239,10 @@ TEST_F(Live, AConfigurationFileSetsTheBudget) {
 TEST_F(Live, OfAnInterruptedReportNothingStays) {
   write_drive("q.npy", 60);
   ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --out r.jsonl").exit_code, 0);
-  // A run without end.
+  // A run without end: frames 110 to 159, 210 to 259, and so on.
   folder_.write("stop.sh",
-                "mkfifo run && { while cat r.jsonl; do :; done >run 2>/dev/null & }\n"
+                "mkfifo run && { n=0; while n=$((n+1)); tail -n +11 r.jsonl | sed "
+                "'s/\"newest\":/&'$n'/'; do :; done >run 2>/dev/null & }\n"
                 "env --default-signal=INT \"$@\" 2>stderr.txt &\n"
                 "until ls -d .p.html.partial-* >/dev/null 2>&1; do sleep 0.01; done\n"
                 "kill -INT $!; wait $!\n");
@@ -273,6 +274,13 @@ TEST_F(Live, TheReportIsOnePage) {
   EXPECT_EQ(run("report missing.jsonl --out x.html").exit_code, 2);
   EXPECT_EQ(run("report r.jsonl --summary r.jsonl --out x.html").exit_code, 2);
   EXPECT_EQ(run("report r.jsonl --out r.jsonl").exit_code, 2) << "an input is not written over";
+  folder_.write("twice.jsonl", test::read_all(file("r.jsonl")) + test::read_all(file("r.jsonl")));
+  EXPECT_EQ(run("report twice.jsonl --out x.html").exit_code, 2) << "two runs";
+  ASSERT_EQ(run("run --source q.npy --ds 5 --exclude 20 --frames 50 --out half.jsonl").exit_code,
+            0);
+  const test::Outcome half = run("report half.jsonl --summary s.json --out x.html");
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_NE(half.err.find("has 50; give the summary of that run"), std::string::npos) << half.err;
   EXPECT_FALSE(exists("x.html"));
 }
 

@@ -387,7 +387,9 @@ TEST(ReportPage, HoldsTheRunAndNoMarkupOfOthers) {
       R"(],"now":null,"k":1,"candidates":2,"distances":3,"full_search":false,"map_full":false,)"
       R"("deadline_missed":true,"overloaded":false,"dropped":1,"lost":0,"sequence":7,)"
       R"("latency_ms":{"grab":1.0,"describe":2.0,"match":3.0,"total":6.0},"age_ms":0.0})";
-  std::istringstream lines(line + "\n" + line + "\n");
+  std::string next = line;
+  next.replace(next.find("\"newest\":2"), 10, "\"newest\":3");
+  std::istringstream lines(line + "\n" + next + "\n");
   const std::string page = report_page(lines, "r.jsonl", {{"source", "</script><b>"}});
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_NE(page.find("\"frames\":2"), std::string::npos);
@@ -395,6 +397,8 @@ TEST(ReportPage, HoldsTheRunAndNoMarkupOfOthers) {
   EXPECT_EQ(page.find("src=\"/"), std::string::npos) << "nothing is fetched";
   std::istringstream none("");
   EXPECT_TRUE(test::says(test::setup_error([&] { (void)report_page(none, "r", {}); }), "empty"));
+  std::istringstream twice(line + "\n" + line + "\n");
+  EXPECT_TRUE(test::says(test::setup_error([&] { (void)report_page(twice, "r", {}); }), "r:2"));
   std::istringstream other(line + "\n{}\n");
   EXPECT_TRUE(test::says(test::setup_error([&] { (void)report_page(other, "r", {}); }), "r:2"));
 }

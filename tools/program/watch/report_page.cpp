@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "program/process/interruption.hpp"
 #include "program/process/json_text.hpp"
@@ -92,10 +93,12 @@ class Lines {
 
   void take_frame(const Json& line) {
     RunCounts& counts = snapshot_->counts;
-    ++counts.frames;
     FrameReport& report = snapshot_->frame.report;
+    const auto newest = line.at("newest").get<std::uint64_t>();
+    if (counts.frames > 0 && newest <= report.newest) throw std::invalid_argument("another run");
+    ++counts.frames;
     report = {};
-    report.newest = line.at("newest").get<std::uint64_t>();
+    report.newest = newest;
     report.gate = gate_of(line.at("status").get<std::string>()).value_or(Gate::waiting);
     report.k = line.at("k").get<std::size_t>();
     report.full_search = line.at("full_search").get<bool>();
@@ -146,6 +149,7 @@ void replace(std::string& text, std::string_view part, const std::string& by) {
 }  // namespace
 
 std::string report_page(std::istream& lines, const std::string& name, Json run) {
+  const Json summed_up = run.is_object() ? run.value("frames", Json()) : Json();
   RunView view(std::move(run));
   Lines taken(view);
   std::size_t number = 0;
@@ -155,11 +159,18 @@ std::string report_page(std::istream& lines, const std::string& name, Json run) 
     try {
       taken.take(Json::parse(line));
     } catch (const std::exception&) {  // JSON's, and a status that there is not
-      throw SetupError({fmt::format("{}:{}", name, number), "is no line that `seqloop run` writes",
+      throw SetupError({fmt::format("{}:{}", name, number),
+                        "is no line that `seqloop run` writes there",
                         "give what `run --out` wrote"});
     }
   }
   if (number == 0) throw SetupError({name, "is empty", "give what `run --out` wrote"});
+  if (!summed_up.is_null() && summed_up != taken.frames()) {
+    throw SetupError({"summary",
+                      fmt::format("it is of a run of {} frames, and {} has {}",
+                                  json_text(summed_up), name, taken.frames()),
+                      "give the summary of that run, or leave --summary out"});
+  }
   taken.end();
   Json data;
   data["status"] = view.status();
