@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "sqlite/little_endian.hpp"
 #include "sqlite/pages_ahead.hpp"
@@ -336,6 +337,17 @@ std::vector<std::string> MapFile::check() const {
   std::vector<SessionFacts> known;
   look([&] { known = sessions(); });
   std::vector<std::uint64_t> counted(known.size());
+  std::vector<std::optional<PlaceRecord>> newest(known.size());
+  std::vector<std::string> out_of_order(known.size());  // the first place of each session that is
+  const auto look_at_order = [&](std::size_t session, const PlaceRecord& record) {
+    const std::optional<PlaceRecord> before = std::exchange(newest[session], record);
+    if (!before || can_follow(record, *before) || !out_of_order[session].empty()) return;
+    const std::string other = "place " + std::to_string(before->number);
+    out_of_order[session] = "place " + std::to_string(record.number) + " of session '" +
+                            known[session].name + "' cannot follow " + other + ": its frame is " +
+                            std::to_string(record.frame) + ", and that of " + other + " is " +
+                            std::to_string(before->frame);
+  };
   read(
       [&](const PlaceBlock& block) {
         const auto owner = std::ranges::find(known, block.session, &SessionFacts::id);
@@ -344,7 +356,9 @@ std::vector<std::string> MapFile::check() const {
                           " belongs to no session");
           return;
         }
-        counted[static_cast<std::size_t>(owner - known.begin())] += block.records.size();
+        const auto session = static_cast<std::size_t>(owner - known.begin());
+        counted[session] += block.records.size();
+        for (const PlaceRecord& record : block.records) look_at_order(session, record);
       },
       [&wrong](const std::string& what) { wrong.push_back(what + " is damaged"); });
   const bool blocks_whole = wrong.empty();
@@ -353,6 +367,7 @@ std::vector<std::string> MapFile::check() const {
       wrong.push_back("session '" + known[i].name + "' has " + std::to_string(counted[i]) +
                       " places and not " + std::to_string(known[i].places));
     }
+    if (!out_of_order[i].empty()) wrong.push_back(out_of_order[i]);
     look([&] { (void)statistics(known[i].id); });
   }
   look([&] { read_links([](const SavedLink&) {}); });

@@ -46,6 +46,31 @@ bool are(std::span<const RawValue> columns, std::string_view types) {
   });
 }
 
+/// The most places that can follow each other.
+/// @param records whose numbers ascend
+std::vector<PlaceRecord> most_in_order(std::span<const PlaceRecord> records) {
+  constexpr std::size_t none = ~std::size_t{0};
+  // The longest rising row of frames: of each length, the end that is lowest so far.
+  std::vector<std::size_t> ends;
+  std::vector<std::size_t> before(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const auto end = std::ranges::lower_bound(ends, records[i].frame, {},
+                                              [&](std::size_t at) { return records[at].frame; });
+    before[i] = end == ends.begin() ? none : *std::prev(end);
+    if (end == ends.end()) {
+      ends.push_back(i);
+    } else {
+      *end = i;
+    }
+  }
+  std::vector<PlaceRecord> kept;
+  for (std::size_t at = ends.empty() ? none : ends.back(); at != none; at = before[at]) {
+    kept.push_back(records[at]);
+  }
+  std::ranges::reverse(kept);
+  return kept;
+}
+
 /// All that is whole in a damaged map; places and pictures by where they are.
 class Remains {
  public:
@@ -243,10 +268,12 @@ class Copying {
         map_.begin_session(name, session.facts.began_ns, session.facts.settings);
     ++result_.sessions;
     std::uint64_t places = 0;
-    std::uint64_t frames = session.facts.frames;
+    const std::vector<PlaceRecord> kept = places_to_keep(session);
+    const std::uint64_t frames =
+        std::max(session.facts.frames, kept.empty() ? 0 : kept.back().frame + 1);
     for (const auto& [first, place] : session.blocks) {
       remains_.read_block(place, [&](const BlockRow& row) {
-        const std::size_t saved = copy_block(own, row, frames);
+        const std::size_t saved = copy_block(own, row, kept, frames);
         places += saved;
       });
     }
@@ -283,18 +310,37 @@ class Copying {
                            what);
   }
 
+  std::vector<PlaceRecord> places_to_keep(const Remains::Session& session) {
+    std::vector<PlaceRecord> records;
+    for (const auto& [first, place] : session.blocks) {
+      remains_.read_block(place, [&](const BlockRow& row) {
+        if (!row.whole(map_.form())) return;
+        for (const PlaceRecord& record : decode_records(row.records)) {
+          // Numbers that do not ascend are those of a row that was written anew elsewhere.
+          const std::uint64_t next =
+              records.empty() ? map_.next_place() : records.back().number + 1;
+          if (remains_.removed.contains(record.number) || record.number < next) continue;
+          records.push_back(record);
+        }
+      });
+    }
+    return most_in_order(records);
+  }
+
   /// @return places saved
-  std::size_t copy_block(std::int64_t session, const BlockRow& row, std::uint64_t& frames) {
+  std::size_t copy_block(std::int64_t session, const BlockRow& row,
+                         const std::vector<PlaceRecord>& kept, std::uint64_t frames) {
     const auto size = static_cast<std::size_t>(map_.form().place_bytes);
     if (!row.whole(map_.form())) return 0;
     std::vector<PlaceRecord> records;
     std::vector<std::byte> bytes;
     const std::vector<PlaceRecord> all = decode_records(row.records);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      frames = std::max(frames, all[i].frame + 1);
-      // Numbers that do not ascend are those of a row that was written anew elsewhere.
       const std::uint64_t next = records.empty() ? map_.next_place() : records.back().number + 1;
-      if (remains_.removed.contains(all[i].number) || all[i].number < next) continue;
+      if (!std::ranges::binary_search(kept, all[i].number, {}, &PlaceRecord::number) ||
+          all[i].number < next) {
+        continue;
+      }
       records.push_back(all[i]);
       const std::span<const std::byte> place = row.places.subspan(i * size, size);
       bytes.insert(bytes.end(), place.begin(), place.end());

@@ -176,7 +176,12 @@ std::uint64_t MapFile::add(const MapFile& from) {
       from.state_->read(numbers.first, numbers.last, [&](const PlaceBlock& block) {
         records.assign(block.records.begin(), block.records.end());
         for (PlaceRecord& record : records) record.number += added;
-        save(id, {.records = records, .places = block.places});
+        try {
+          save(id, {.records = records, .places = block.places});
+        } catch (const std::invalid_argument&) {
+          throw SetupError({from.path().string(), "its places cannot follow each other",
+                            "`seqloop map check` says more"});
+        }
       });
       std::vector<SavedThumbnail> pictures;
       from.read_thumbnails([&](const SavedThumbnail& picture) {

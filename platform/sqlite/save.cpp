@@ -12,12 +12,12 @@ void check_batch(const MapBatch& batch, const MapForm& form) {
       batch.places.size() % form.place_bytes != 0) {
     throw std::invalid_argument("MapFile::save: bytes of places do not fit the records");
   }
-  std::uint64_t next = 0;
+  const PlaceRecord* before = nullptr;
   for (const PlaceRecord& record : batch.records) {
-    if (record.number < next || record.number >= number_end) {
-      throw std::invalid_argument("MapFile::save: numbers of places do not ascend");
+    if (record.number >= number_end || (before != nullptr && !can_follow(record, *before))) {
+      throw std::invalid_argument("MapFile::save: places that cannot follow each other");
     }
-    next = record.number + 1;
+    before = &record;
   }
 }
 
@@ -33,8 +33,9 @@ void MapFile::State::save_session(const SessionFacts& facts) {
       .run();
 }
 
-void MapFile::State::check_numbers(std::int64_t session, std::uint64_t first,
+void MapFile::State::check_numbers(std::int64_t session, const PlaceRecord& first_place,
                                    std::uint64_t last) const {
+  const std::uint64_t first = first_place.number;
   bool fits = session >= 1 && session < counts.next_session;
   // The newest session's are above all that were ever given.
   if (session + 1 == counts.next_session) fits = signed_of(first) >= counts.next_place;
@@ -43,8 +44,9 @@ void MapFile::State::check_numbers(std::int64_t session, std::uint64_t first,
                    "LIMIT 1");
   if (before.with(signed_of(first)).step()) {
     const std::vector<PlaceRecord> records = decode_records(before.blob(1));
-    fits =
-        fits && before.integer(0) <= session && !records.empty() && records.back().number < first;
+    fits = fits && before.integer(0) <= session && !records.empty() &&
+           (before.integer(0) < session ? records.back().number < first
+                                        : can_follow(first_place, records.back()));
   }
   Statement behind(database,
                    "SELECT session, first FROM block WHERE first > ? ORDER BY first LIMIT 1");
@@ -52,7 +54,8 @@ void MapFile::State::check_numbers(std::int64_t session, std::uint64_t first,
     fits = fits && behind.integer(0) > session && behind.integer(1) > signed_of(last);
   }
   if (!fits) {
-    throw std::invalid_argument("MapFile::save: places of other sessions have these numbers");
+    throw std::invalid_argument(
+        "MapFile::save: places cannot follow those that are there, or others have their numbers");
   }
 }
 
@@ -154,7 +157,7 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
   State& map = *state_;
   check_batch(batch, map.form);
   if (!batch.records.empty()) {
-    map.check_numbers(session, batch.records.front().number, batch.records.back().number);
+    map.check_numbers(session, batch.records.front(), batch.records.back().number);
   } else if (session < 1 || session >= map.counts.next_session) {
     throw std::invalid_argument("MapFile::save: no such session");
   }

@@ -46,7 +46,6 @@ CREATE TABLE thumbnail(
 
 constexpr std::size_t record_bytes = 24;
 constexpr std::size_t most_block_bytes = std::size_t{4} << 20U;
-constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
 
 /// Numbers in columns are signed.
 [[nodiscard]] constexpr std::int64_t signed_of(std::uint64_t value) noexcept {

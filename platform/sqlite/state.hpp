@@ -90,8 +90,10 @@ struct MapFile::State {
   [[nodiscard]] std::vector<SessionFacts> sessions() const;
   /// "session 'monday'", as far as that can be told.
   [[nodiscard]] std::string session_name(std::int64_t id) const;
-  /// Throws std::invalid_argument: a session may not give its new places these numbers.
-  void check_numbers(std::int64_t session, std::uint64_t first, std::uint64_t last) const;
+  /// Throws std::invalid_argument: a session may not give its new places these numbers, or they
+  /// cannot follow its others.
+  void check_numbers(std::int64_t session, const PlaceRecord& first_place,
+                     std::uint64_t last) const;
   void insert_block(std::int64_t session, std::span<const PlaceRecord> records,
                     std::span<const std::byte> places);
   /// @param links `session` is not looked at

@@ -12,6 +12,7 @@
 #include "platform/pictures.hpp"
 #include "program/program.hpp"
 #include "seqloop/files/npy_file.hpp"
+#include "sqlite/sample_map.hpp"
 
 namespace seqloop {
 namespace {
@@ -337,6 +338,18 @@ TEST_F(LastingMaps, APoseGraphHasTheDrivesOwnLoops) {
   EXPECT_NE(outcome.err.find(std::to_string(earlier) + " loops with places of earlier sessions"),
             std::string::npos)
       << outcome.err;
+}
+
+TEST_F(LastingMaps, WhatRunRefusesCheckNamesAndRecoverLeavesOut) {
+  expect_done("match --query first.npy --map m.seqloop --out m.csv");
+  test::set_frame(file("m.seqloop"), 50, 49);
+  const std::string localise = "match --query again.npy --out a.csv --read-only --map ";
+  expect_refused(localise + "m.seqloop", "place 50 is none that can follow; seqloop map check");
+  expect_refused("map check m.seqloop", "cannot follow place 49: its frame is 49, and that of");
+  expect_done("map recover m.seqloop whole.seqloop");
+  expect_done("map check whole.seqloop");
+  expect_done(localise + "whole.seqloop");
+  EXPECT_EQ(nlohmann::json::parse(run("map info whole.seqloop --json").out)["places"], 119);
 }
 
 TEST_F(LastingMaps, WhatIsRefusedMakesNoMap) {

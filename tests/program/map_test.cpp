@@ -21,7 +21,7 @@ class MapVerb : public test::Program {
     for (const char* session : {"monday", "tuesday"}) {
       const std::int64_t id = map.begin_session(session, 1'700'000'000'000'000'000, "k = 10");
       for (std::uint64_t i = 0; i < 4; ++i)
-        test::save_sample(map, id, i * 11, places, {}, std::nullopt, true);
+        test::save_sample(map, id, i * (places + 1), places, {}, std::nullopt, true);
     }
   }
 

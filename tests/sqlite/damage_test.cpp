@@ -40,9 +40,11 @@ class Sample {
       MapFile map = MapFile::open(path, test::sample_form());
       for (const char* session : {"monday", "tuesday", "wednesday"}) {
         const std::int64_t id = map.begin_session(session, 7, "k = 10");
+        std::uint64_t frames = 0;
         for (const std::size_t places : {5U, 20U, 35U, 90U, 1U, 200U}) {
-          test::save_sample(map, id, 0, places);
-          blocks_.emplace_back();
+          test::save_sample(map, id, frames, places);
+          blocks_.push_back({frames, {}, {}});
+          frames += places;
           for (std::size_t i = 0; i < places; ++i) {
             blocks_.back().places.push_back(map.next_place() - places + i);
           }
@@ -55,6 +57,7 @@ class Sample {
   }
 
   struct Block {
+    std::uint64_t frame;  ///< of its first place
     std::vector<std::uint64_t> places;
     std::set<std::size_t> pages;
   };
@@ -78,7 +81,7 @@ class Sample {
       look_for({reinterpret_cast<const char*>(place.data()), place.size()});
       const auto time = static_cast<std::int64_t>(number) * 40 - 100;
       std::string record(16, '\0');
-      const std::uint64_t frame = number - block.places.front();
+      const std::uint64_t frame = block.frame + number - block.places.front();
       std::memcpy(record.data(), &frame, 8);
       std::memcpy(record.data() + 8, &time, 8);
       look_for(record);
@@ -298,7 +301,7 @@ TEST(MapInCircles, IsWorkedOnNoLongerThanItHasRoomForRows) {
       {"compact", [](MapFile& map) { map.compact(); }},
       {"retire", [](MapFile& map) { (void)map.retire("monday", 1, 4, {}, 1); }},
       {"save", [](MapFile& map) {
-         test::save_sample(map, map.sessions().back().id, 90, 5, {1, 2, 3});
+         test::save_sample(map, map.sessions().back().id, 400, 5, {1, 2, 3});
        }}};
   for (const char* table :
        {"session", "statistics", "block", "removed", "link", "thumbnail", "holder", "map"}) {
@@ -419,7 +422,7 @@ class KilledMap {
     { MapFile::open(open, test::sample_form()).begin_session("a", 0, ""); }
     MapFile map = MapFile::open(open, std::nullopt);
     for (std::size_t i = 0; i < batches; ++i) {
-      test::save_sample(map, 1, 0, 10);
+      test::save_sample(map, 1, 11 * i, 10);
       ends.push_back(fs::file_size(open.string() + "-wal"));
     }
     fs::copy(open, file);

@@ -268,8 +268,15 @@ TEST_F(Map, RefusesBatchesThatDoNotFit) {
     const std::array<sqlite::PlaceRecord, 1> record{{{number, 0, 0}}};
     EXPECT_THROW(map.save(first, {.records = record, .places = place}), std::invalid_argument);
   }
-  const std::array<sqlite::PlaceRecord, 1> record{{{9, 0, 0}}};
+  const std::array<sqlite::PlaceRecord, 1> record{{{9, 5, 0}}};
   EXPECT_THROW(map.save(first, {.records = record}), std::invalid_argument);
+  // The last frame is 4.
+  for (const auto& [one, other] : {std::pair{4U, 5U}, {3U, 5U}, {7U, 7U}, {7U, 6U}}) {
+    const std::array<sqlite::PlaceRecord, 2> records{{{5, one, 0}, {6, other, 0}}};
+    const std::vector<std::byte> places(2 * place.size());
+    EXPECT_THROW(map.save(first, {.records = records, .places = places}), std::invalid_argument)
+        << one << ", " << other;
+  }
   EXPECT_THROW(map.save(first + 1, {}), std::invalid_argument);
   EXPECT_EQ(content(map), before);
   const std::string fault = setup_error([&] { (void)map.begin_session("a", 0, ""); });
@@ -319,6 +326,47 @@ TEST_F(Map, SeveralSessionsGrowSideBySide) {
   refused(ids[2], 2 * room + 29, 2 * room + 40);
   refused(ids[2] + 1, 9 * room, 9 * room + 1);
   EXPECT_EQ(content(map), before);
+}
+
+TEST_F(Map, PlacesThatCannotFollowAreNamedAndRecoverLeavesOutAsFewAsItCan) {
+  const auto recovered = [this](const std::string& out) {
+    const sqlite::Recovered found = sqlite::recover(file(), file(out));
+    EXPECT_EQ(MapFile::read_only(file(out)).check(), std::vector<std::string>{});
+    return std::pair{found.places, found.lost};
+  };
+  using Words = std::vector<std::string>;
+  make();
+  test::set_frame(file(), 1, 99'999);
+  EXPECT_EQ(MapFile::read_only(file()).check(),
+            Words{"place 2 of session 'monday' cannot follow place 1: its frame is 2, and that "
+                  "of place 1 is 99999"});
+  EXPECT_EQ(recovered("one"), (std::pair{std::uint64_t{79}, Words{"session 'monday': 1 of 40 "
+                                                                  "places"}}));
+  EXPECT_EQ(MapFile::read_only(file("one")).sessions()[0].frames, 44U);
+  EXPECT_FALSE(numbers(MapFile::read_only(file("one"))).contains(1));
+
+  // Between blocks, and of the second session.
+  test::set_frame(file(), 1, 1);
+  test::set_frame(file(), 50, 9);
+  EXPECT_EQ(MapFile::read_only(file()).check(),
+            Words{"place 50 of session 'tuesday' cannot follow place 49: its frame is 9, and that "
+                  "of place 49 is 9"});
+  EXPECT_EQ(recovered("two").first, 79U);
+
+  // The last place of a session may be of any frame: a camera counts those that were lost, too.
+  test::set_frame(file(), 50, 11);
+  test::set_frame(file(), 39, 99'999);
+  EXPECT_EQ(MapFile::read_only(file()).check(), Words{});
+  EXPECT_EQ(recovered("three").first, 80U);
+}
+
+TEST_F(Map, PlacesThatCannotFollowAreNotAdded) {
+  make();
+  test::set_frame(file(), 30, 3);
+  MapFile map = MapFile::open(file("other"), test::sample_form());
+  const std::string fault = setup_error([&] { (void)map.add(MapFile::read_only(file())); });
+  EXPECT_TRUE(says(fault, "its places cannot follow each other; `seqloop map check` says more"));
+  EXPECT_TRUE(map.sessions().empty());
 }
 
 TEST_F(Map, PlacesThatGoDoNotComeBackAndTheirNumbersAreNotUsedAgain) {
@@ -757,7 +805,7 @@ TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {
   const std::string before = content();
   const auto refused = [](MapFile& map) {
     try {
-      test::save_sample(map, 2, 44, 3);
+      test::save_sample(map, 2, 60, 3);
     } catch (const sqlite::SaveError& error) {
       return std::string(error.what());
     }

@@ -7,6 +7,8 @@
 
 #include "seqloop/fault.hpp"
 #include "sqlite/checksum.hpp"
+#include "sqlite/database.hpp"
+#include "sqlite/state.hpp"
 
 namespace seqloop::test {
 
@@ -58,6 +60,21 @@ void save_sample(MapFile& map, std::int64_t session, std::uint64_t frames, std::
                      .thumbnails = pictures,
                      .removed = removed,
                      .statistics = &statistics});
+}
+
+void set_frame(const std::filesystem::path& path, std::uint64_t number, std::uint64_t frame) {
+  const Database database(path, SQLITE_OPEN_READWRITE);
+  Statement find(database, std::string(block_columns) +
+                               "FROM block WHERE first <= ? ORDER BY first DESC LIMIT 1");
+  if (!find.with(signed_of(number)).step()) throw std::invalid_argument("no such place");
+  BlockRow row = block_row(find);
+  std::vector<PlaceRecord> records = decode_records(row.records);
+  std::ranges::find(records, number, &PlaceRecord::number)->frame = frame;
+  const std::vector<std::byte> coded = encode_records(records);
+  row.records = coded;
+  Statement(database, "UPDATE block SET records = ?, checksum = ? WHERE first = ?")
+      .with(row.records, row.sum(), row.first)
+      .run();
 }
 
 std::string content_of(const MapFile& map, std::string& fault) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ namespace seqloop::test {
 void save_sample(sqlite::MapFile& map, std::int64_t session, std::uint64_t frames,
                  std::size_t places, std::vector<std::uint64_t> removed = {},
                  std::optional<std::uint64_t> first = std::nullopt, bool jpeg = false);
+
+/// Gives a place of a map another frame, with the right checksum: `save` would refuse it.
+void set_frame(const std::filesystem::path& path, std::uint64_t number, std::uint64_t frame);
 
 /// All that a map holds, as text; two maps that say the same are the same. `check` must find
 /// nothing wrong. @param fault told what is wrong, else

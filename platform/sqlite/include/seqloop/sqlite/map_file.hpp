@@ -17,6 +17,9 @@ namespace seqloop::sqlite {
 /// Bytes of a place that can be saved.
 constexpr std::uint64_t most_place_bytes = std::uint64_t{1} << 26U;
 
+/// Numbers of places and of frames end below it.
+constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
+
 /// What all places of a map have in common: only such places can be compared.
 struct MapForm {
   std::string form;       ///< how a place is kept, in the caller's words: "int8 euclidean"
@@ -49,12 +52,17 @@ struct SavedStatistics {
 
 /// What is known of one place beside its bytes.
 struct PlaceRecord {
-  std::uint64_t number = 0;  ///< in the map; never given again, below 2^62
-  std::uint64_t frame = 0;   ///< of its session
+  std::uint64_t number = 0;  ///< in the map; never given again, below `number_end`
+  std::uint64_t frame = 0;   ///< of its session, as its source counts: those that were lost, too
   std::int64_t time_ns = 0;  ///< of that frame, in the session's own clock
 
   bool operator==(const PlaceRecord&) const = default;
 };
+
+/// Whether a place can stand behind another one of its session: a run takes no other.
+[[nodiscard]] inline bool can_follow(const PlaceRecord& place, const PlaceRecord& before) noexcept {
+  return place.number > before.number && place.frame > before.frame;
+}
 
 /// Where a person has said something of a visit, that stands for its probability; the last word
 /// counts.
@@ -101,7 +109,7 @@ struct ThumbnailFacts {
 /// What is saved at once: all of it or nothing.
 struct MapBatch {
   std::uint64_t frames = 0;                ///< of the session are dealt with, these among them
-  std::span<const PlaceRecord> records{};  ///< new places; numbers ascend, as `save` says
+  std::span<const PlaceRecord> records{};  ///< new places; each can follow the one before it
   std::span<const std::byte> places{};     ///< [records * place_bytes]
   std::span<const SavedLink> links{};      ///< `session` is not looked at
   std::span<const SavedThumbnail> thumbnails{};  ///< the first one of a place stays
@@ -184,7 +192,8 @@ class MapFile {
   [[nodiscard]] ThumbnailFacts thumbnail_facts() const;
 
   /// Everything that is wrong with the file, as far as it can be told: every row's checksum, sums,
-  /// and SQLite's own structure. Empty: nothing. Work: the whole file, twice.
+  /// of each session the first place that cannot follow the one before it, and SQLite's own
+  /// structure. Empty: nothing. Work: the whole file, twice.
   [[nodiscard]] std::vector<std::string> check() const;
 
   /// Begins a session.
@@ -196,7 +205,7 @@ class MapFile {
   /// @param session the newest one gives numbers from `next_place` on. An earlier one may grow as
   ///   well where there is room: above its places' numbers, and below those of all later sessions
   /// Throws SaveError: disk full, not writable, …: nothing of it is saved, the map is as before.
-  /// std::invalid_argument: another session, numbers or sizes that do not fit.
+  /// std::invalid_argument: another session, numbers, frames or sizes that do not fit.
   void save(std::int64_t session, const MapBatch& batch);
 
   /// Removes a session with its places, thumbnails and links, and all visits of it. Other places
@@ -215,8 +224,8 @@ class MapFile {
                      std::span<const Successor> successors, std::uint64_t every);
 
   /// Copies all sessions of another map behind this one's. A name that is taken gets a number.
-  /// @return what is added to its places' numbers. Throws SetupError: another form, damaged;
-  ///   SaveError. All of it or nothing
+  /// @return what is added to its places' numbers. Throws SetupError: another form, damaged, places
+  ///   that cannot follow each other; SaveError. All of it or nothing
   std::uint64_t add(const MapFile& from);
 
   /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.

@@ -18,11 +18,12 @@ struct Recovered {
 };
 
 /// Copies every row that is whole into a new map. Rows are looked for in all pages, whatever became
-/// of the trees that led to them, and checksums tell which are whole. Places keep their numbers;
-/// sessions are numbered anew. The damaged file is only read.
+/// of the trees that led to them, and checksums tell which are whole. Where places of a session
+/// cannot follow each other, as few as possible are left out. Places keep their numbers; sessions
+/// are numbered anew. The damaged file is only read.
 /// @param in a map, with its log beside it where there is one
 /// @param out a new file, written bit by bit: it is whole when this returns
-/// Throws SetupError: not readable, nothing whole in it; SaveError. Work: the file, twice.
+/// Throws SetupError: not readable, nothing whole in it; SaveError. Work: the file, three times.
 [[nodiscard]] Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out);
 
 }  // namespace seqloop::sqlite
