@@ -2,8 +2,10 @@
 // `seqloop map` as a user calls it.
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "program/program.hpp"
 #include "sqlite/sample_map.hpp"
@@ -193,9 +195,181 @@ TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   expect_refused("import folder --out c", "session-2.npy: its numbers are not");
   fs::remove(file("folder/places.csv"));
   expect_refused("import folder --out c", "places.csv");
-  folder_.write("folder/map.json", "{}");
-  expect_refused("import folder --out c", "map.json: is not what an export says: key 'form' not");
-  expect_refused("import none --out c", "none/map.json: cannot be read; name a folder that");
+  expect_refused("import none --out c", "none: is no folder; name a folder that `seqloop map exp");
+}
+
+/// An export of a map that is changed before it is imported.
+class ImportedMap : public MapVerb {
+ protected:
+  void SetUp() override {
+    make("a");
+    expect(0, "export a --out folder", "80 places");
+    json_ = nlohmann::json::parse(test::read_all(file("folder/map.json")));
+  }
+
+  /// A table of the export with a line in another's place. @param line from 1 on
+  void with_line(const std::string& name, std::size_t line, const std::string& other) const {
+    std::istringstream whole(test::read_all(file("folder/" + name)));
+    std::string text;
+    std::string row;
+    for (std::size_t i = 1; std::getline(whole, row); ++i) {
+      text += (i == line ? other : row) + '\n';
+    }
+    folder_.write("folder/" + name, text);
+  }
+
+  void expect_line_refused(const std::string& name, std::size_t line, const std::string& other,
+                           const std::string& words) const {
+    const std::string whole = test::read_all(file("folder/" + name));
+    with_line(name, line, other);
+    SCOPED_TRACE(other);
+    const auto outcome = expect_refused("import folder --out c", words);
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    folder_.write("folder/" + name, whole);
+  }
+
+  void expect_json_refused(const std::string& pointer, const nlohmann::json& value,
+                           const std::string& words) const {
+    nlohmann::json json = json_;
+    json[nlohmann::json::json_pointer(pointer)] = value;
+    folder_.write("folder/map.json", json.dump());
+    SCOPED_TRACE(pointer + ": " + value.dump());
+    const auto outcome = expect_refused("import folder --out c", "folder/map.json: " + words);
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  }
+
+  nlohmann::json json_;
+};
+
+TEST_F(ImportedMap, ItsPlacesMustBeSuchAsRunTakes) {
+  const auto refused = [this](std::size_t line, const std::string& row, const std::string& words) {
+    expect_line_refused("places.csv", line, row,
+                        "places.csv:" + std::to_string(line) + ": " + words);
+  };
+  refused(3, "1,1,0,0", "frame 0 of place 1 is not above frame 0 of place 0; list places");
+  refused(12, "10,1,8,0", "frame 8 of place 10 is not above frame 9 of place 9");
+  refused(3, "0,1,1,0", "place 0 stands behind place 0 of its session; list places in the order");
+  refused(3, "1,77,1,0", "session 77 is not in map.json, which has 2 sessions");
+  refused(3, "1,0,1,0", "session 0 is not in map.json");
+  refused(3, "1,1,1", "3 cells under a header of 4");
+  refused(3, "1,1,x,0", "'x' under 'frame' is not a whole number");
+  refused(3, "1,1,-1,0", "'-1' under 'frame' is not a whole number");
+  refused(3, "1,1,1,1e3", "'1e3' under 'time_ns' is not a whole number");
+  refused(81, "4611686018427387904,2,42,0", "place 4611686018427387904 is too high; write one");
+  // Of a frame that is too high, the next place cannot follow.
+  expect_line_refused("places.csv", 3, "1,1,99999,0",
+                      "places.csv:4: frame 2 of place 2 is not above frame 99999 of place 1");
+  // A camera counts frames that were lost, too, and a session those that came.
+  with_line("places.csv", 41, "39,1,99999,0");
+  expect(0, "import folder --out c", "80 places in 2 sessions");
+  expect(0, "check c", "all of them whole");
+}
+
+TEST_F(ImportedMap, ItsLinksMustBeSuchAsAMapHas) {
+  const auto refused = [this](const std::string& row, const std::string& words) {
+    expect_line_refused("links.csv", 3, row, "links.csv:3: " + words);
+  };
+  for (const std::string wrong : {"nan", "inf", "7", "-5", "-0.1"}) {
+    for (const std::string where : {"1,0,0,0,0,", "1,10,1,0,0,"}) {
+      refused(where + wrong, "its probability is " + wrong + "; write a number from 0 to 1, or");
+    }
+  }
+  refused("1,0,0,0,0,2", "its probability is 2; write");
+  refused("1,0,0,0,0,-1", "its probability is -1; write");
+  refused("1,0,9,0,0,.5", "'9' under 'visit' is not 0 or 1");
+  refused("77,0,1,0,0,.5", "session 77 is not in map.json, which has 2 sessions");
+  refused("1,0,0,10,0,.5", "place 10 is frame 11 of its session, and not 0");
+  refused("1,0,0,40,0,.5", "place 40 is of session 2, and not of 1");
+  refused("1,10,1,5,0,.5", "a visit has no place of its own, and this has 5; write 0, or no visit");
+  refused("1,10,1,0,4611686018427387904,.5", "place 4611686018427387904 is too high; write one");
+  refused("1,4611686018427387904,1,0,0,.5", "frame 4611686018427387904 is too high; write one");
+  refused("1,x,1,0,0,.5", "'x' under 'frame' is not a whole number");
+  // A person's words; places that went, which links outlive.
+  std::string links = test::read_all(file("folder/links.csv"));
+  links += "1,0,1,0,0,2\n1,0,1,0,0,-1\n1,0,1,0,0,0\n1,0,1,0,999,.5\n1,77,0,888,999,.5\n";
+  folder_.write("folder/links.csv", links);
+  expect(0, "import folder --out c", "80 places in 2 sessions");
+  std::size_t count = 0;
+  MapFile::read_only(file("c")).read_links([&count](const sqlite::SavedLink&) { ++count; });
+  EXPECT_EQ(count, 16U + 5U);
+}
+
+TEST_F(ImportedMap, WhatItSaysOfItselfIsLookedAt) {
+  const std::string whole = "; write a whole number from 0 to 4611686018427387903";
+  const std::string first = "/sessions/0/";
+  expect_json_refused(first + "frames", -5, "'frames' of session 1 is -5" + whole);
+  expect_json_refused(first + "frames", 18446744073709551611U,
+                      "'frames' of session 1 is 18446744073709551611" + whole);
+  expect_json_refused(first + "frames", 1.5, "'frames' of session 1 is 1.5" + whole);
+  expect_json_refused(first + "frames", true, "'frames' of session 1 is true" + whole);
+  expect_json_refused(first + "frames", "many", "'frames' of session 1 is \"many\"" + whole);
+  expect_json_refused(first + "frames", nullptr, "'frames' of session 1 is null" + whole);
+  expect_json_refused(first + "began_ns", 1e30, "'began_ns' of session 1 is 1e+30; write a whole");
+  expect_json_refused(first + "name", 3, "'name' of session 1 is 3; write a text");
+  expect_json_refused(first + "name", "", "session 1 has no name; give it one");
+  expect_json_refused(first + "settings", {1}, "'settings' of session 1 is an array; write a text");
+  expect_json_refused("/sessions/1", 7, "session 2 is 7; write an object");
+  expect_json_refused("/sessions", 7, "'sessions' is 7; write an array of sessions");
+  expect_json_refused("/form", 7, "'form' is 7; write a text");
+  expect_json_refused("/place_bytes", 0,
+                      "'place_bytes' is 0; write a whole number from 1 to 67108");
+  expect_json_refused("/descriptor_size", -1, "'descriptor_size' is -1; write a whole number from");
+  const std::string statistics = first + "statistics";
+  const nlohmann::json three{1, 2, 3};
+  expect_json_refused(statistics, 7, "'statistics' of session 1 is 7; write an object");
+  expect_json_refused(statistics + "/frames", -1, "'frames' of the statistics of session 1 is -1");
+  expect_json_refused(statistics + "/mean", three,
+                      "'mean' of the statistics of session 1 has 3 values; write 5, as a "
+                      "descriptor has");
+  expect_json_refused(statistics + "/variance", three, "'variance' of the statistics of session 1");
+  expect_json_refused(
+      statistics + "/variance/1", -1e-9,
+      "a value of 'variance' of the statistics of session 1 is -1e-09; write a number from "
+      "0 to 1.16e+77");
+  expect_json_refused(statistics + "/variance/1", nullptr,
+                      "a value of 'variance' of the statistics of ses");
+  expect_json_refused(statistics + "/mean/1", 1e39,
+                      "a value of 'mean' of the statistics of session "
+                      "1 is 1e+39; write a number from -3.4e+38 to 3.4e+38");
+  expect_json_refused(statistics + "/mean/1", "x",
+                      "a value of 'mean' of the statistics of session 1 is");
+  for (const char* key : {"form", "describer", "descriptor_size", "place_bytes", "sessions"}) {
+    nlohmann::json json = json_;
+    json.erase(key);
+    folder_.write("folder/map.json", json.dump());
+    expect_refused("import folder --out c",
+                   "folder/map.json: there is no '" + std::string(key) + "'; name a folder that");
+  }
+  folder_.write("folder/map.json", "{\"sessions\": [{\"frames\": NaN}]}");
+  expect_refused("import folder --out c", "map.json: is no JSON object: parse error at line 1");
+}
+
+TEST_F(ImportedMap, AllThatIsWrongWithItIsToldAtOnce) {
+  const auto told = [this](const std::vector<std::string>& all) {
+    const std::string err = expect_refused("import folder --out a", "").err;
+    for (const std::string& words : all) {
+      EXPECT_NE(err.find(words), std::string::npos) << "no '" << words << "' in:\n" << err;
+    }
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(err, '\n')), all.size()) << err;
+  };
+  with_line("places.csv", 3, "1,1,0,0");
+  with_line("places.csv", 5, "3,1,x,-1e");
+  with_line("links.csv", 2, "1,0,0,0,0,nan");
+  fs::remove(file("folder/session-2.npy"));
+  folder_.write("folder/thumbnail-10.jpg", "no picture");
+  json_["sessions"][0]["frames"] = -5;
+  json_["sessions"][1]["name"] = "monday";
+  json_["descriptor_size"] = "five";
+  folder_.write("folder/map.json", json_.dump());
+  told({"a: there is such a file already", "map.json: 'descriptor_size' is \"five\"",
+        "map.json: 'frames' of session 1 is -5", "map.json: two sessions have the name 'monday'",
+        "places.csv:3: ", "places.csv:5: 'x'", "places.csv:5: '-1e'",
+        "links.csv:2: ", "session-2.npy: cannot be read", "thumbnail-10.jpg: is no JPEG picture"});
+
+  // Of many alike, a handful.
+  for (std::size_t line = 2; line < 12; ++line) with_line("links.csv", line, "1,0,0,0,0,nan");
+  EXPECT_NE(expect_refused("import folder --out a", "").err.find("links.csv: and 5 more like"),
+            std::string::npos);
 }
 
 TEST_F(MapVerb, LinksOfNoSessionAreNamedByExport) {

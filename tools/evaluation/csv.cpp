@@ -175,6 +175,10 @@ std::uint64_t CsvRow::whole(std::size_t column) {
   return read([&] { return table_->whole(row_, column); }, std::uint64_t{0});
 }
 
+std::int64_t CsvRow::integer(std::size_t column) {
+  return read([&] { return table_->integer(row_, column); }, std::int64_t{0});
+}
+
 double CsvRow::number(std::size_t column) {
   return read([&] { return table_->number(row_, column); }, nan);
 }
@@ -197,6 +201,12 @@ std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
   if (!parse(lines_[row][column], value) || value > most) {
     refuse(row, column, "a whole number up to 2^62");
   }
+  return value;
+}
+
+std::int64_t CsvTable::integer(std::size_t row, std::size_t column) const {
+  std::int64_t value = 0;
+  if (!parse(lines_[row][column], value)) refuse(row, column, "a whole number");
   return value;
 }
 

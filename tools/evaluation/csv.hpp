@@ -24,6 +24,7 @@ class CsvRow {
 
   /// As those of the table; none throws.
   [[nodiscard]] std::uint64_t whole(std::size_t column);
+  [[nodiscard]] std::int64_t integer(std::size_t column);
   [[nodiscard]] double number(std::size_t column);
   [[nodiscard]] double number_within(std::size_t column, double least, double most);
   [[nodiscard]] bool flag(std::size_t column);
@@ -76,6 +77,7 @@ class CsvTable {
 
   /// Throw SetupError, with the line, for a cell that is no such number.
   [[nodiscard]] std::uint64_t whole(std::size_t row, std::size_t column) const;
+  [[nodiscard]] std::int64_t integer(std::size_t row, std::size_t column) const;  ///< below 0, too
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;  ///< nan and inf too
   [[nodiscard]] double number_within(std::size_t row, std::size_t column, double least,
                                      double most) const;
