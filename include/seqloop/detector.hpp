@@ -72,10 +72,11 @@ class Detector {
   /// Takes the next frame, and answers each frame whose one final answer is due: as soon as it is
   /// sure, or `patience` frames later. By uniqueness that is the window's centre, the frame
   /// ds - ds/2 before this one.
-  /// @param descriptor [D] unit L2, or finite where the difference is mean absolute. If it is
-  ///   empty, of another size, neither of these, or blank where `blank_is_unreadable`, the frame
-  ///   could not be read: it counts as one at which the scene stood still, and its answer is
-  ///   `frame_error`; by uniqueness, that of the centre frame is.
+  /// @param descriptor [D] unit L2 (squares that add up to .99 .. 1.01), or finite where the
+  ///   difference is mean absolute. If it is empty, of another size, neither of these, or blank
+  ///   where `blank_is_unreadable`, the frame could not be read: it counts as one at which the
+  ///   scene stood still, and its answer is `frame_error`; by uniqueness, that of the centre frame
+  ///   is.
   /// @note Where sequences are made of keyframes (`has_keyframes`), a frame that is none becomes no
   ///   place, moves nothing, and is answered as the keyframe before it.
   /// Work: at most `most_work`. Allocates: never.
@@ -118,8 +119,9 @@ class Detector {
   /// Allocates: never.
   [[nodiscard]] std::span<const Answer> finish() noexcept;
 
-  /// By what the drive's frames are standardised now: what its session is saved with, and a later
-  /// drive starts from. `frames() == 0` where nothing is.
+  /// By what the drive's frames are standardised now: what its session is saved with. A later drive
+  /// starts from it if it is given to the map (`PlaceMap::set_statistics`), and anew otherwise.
+  /// `frames() == 0` where nothing is.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
   /// From now on a full map may forget places, but none of the newest `places`, and none that come

@@ -81,7 +81,8 @@ struct Answer {
 /// Where the robot is believed to be at the newest frame, by what has been seen so far.
 struct Belief {
   std::uint64_t place = 0;   ///< the likeliest
-  float probability = 0.0F;  ///< that it is there, 0 .. 1
+  float probability = 0.0F;  ///< that it is there, 0 .. 1. No part of one whole with `new_place`:
+                             ///< both may be low, and together they may come to more than 1
   float new_place = 1.0F;    ///< that it is somewhere the map does not know, 0 .. 1
   std::uint64_t stood = 0;   ///< as `Match::stood`
 

@@ -74,7 +74,8 @@ class PlaceMap {
     std::span<const std::byte> descriptor{};  ///< as `rows().save` gave it
   };
 
-  /// Appends places that were saved, to the newest session.
+  /// Appends places that were saved, to the newest session. Which of them are visits of one place
+  /// is restored by `link` or `set_first_visit`.
   /// @return how many; where not all, the map is full, or the next is none of a map of this form
   /// Work: D and the sketch of each; by thirty-twos, sketches take a tenth of the time.
   /// Allocates: never.

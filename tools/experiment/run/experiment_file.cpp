@@ -311,7 +311,10 @@ class Reader {
       if (!has(descriptors, descriptor.name)) continue;
       if ((descriptor.describer.descriptor == "patches") != compares_patches(matcher)) {
         faults.push_back({"descriptor", "'" + descriptor.name + "' does not go with it",
-                          "seqslam compares patches, all other methods something else"});
+                          compares_patches(matcher)
+                              ? "it compares patches: add a [[descriptor]] with descriptor = "
+                                "\"patches\", and name that"
+                              : "only seqslam compares patches: name another one"});
       }
       for (std::size_t p = 0; p < experiment_.pairs.size(); ++p) {
         const PairSpec& pair = experiment_.pairs[p];

@@ -188,7 +188,7 @@ Verb eval_verb(ExperimentRunner run_experiment) {
        [settings](std::string_view value) { settings->threshold_on = parse_threshold(value); }});
   verb.options.count(
       "frames", settings->frames,
-      "queries that have a truth [as the truth file says, or as far as the matches reach]");
+      "queries that have a truth [0: as the truth file says, or as far as the matches reach]");
   verb.options.flag("json", settings->json, "print JSON");
   verb.options.section("Experiment");
   verb.options.path("experiment", Access::reads, settings->experiment,

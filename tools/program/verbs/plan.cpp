@@ -38,9 +38,11 @@ void print_work(const MatcherConfig& config, const Capacity& capacity) {
              capacity.descriptor_size);
   fmt::print("{:>16}  line sums, of {} differences each\n", most.line_sums,
              config.sequence_length + 1);
-  if (!relocalises(config)) return;
-  fmt::print("{:>16}  places looked at by 32 bytes of their sketches\n", most.scanned);
+  if (most.sketches == 0) return;
+  if (most.scanned > 0)
+    fmt::print("{:>16}  places looked at by 32 bytes of their sketches\n", most.scanned);
   fmt::print("{:>16}  pairs of sketches, 128 bytes each\n", most.sketches);
+  if (!relocalises(config)) return;
   fmt::print(
       "{:>16}  frames until the whole map was looked at\n",
       (capacity.places + config.relocalising.rows_scanned - 1) / config.relocalising.rows_scanned);

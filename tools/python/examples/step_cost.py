@@ -51,6 +51,8 @@ def by_python(places: numpy.ndarray, drive: numpy.ndarray) -> tuple[list[float],
 
 
 def main() -> None:
+    if any(word.startswith("-") for word in sys.argv[1:]):
+        sys.exit(__doc__)
     program = sys.argv[1] if len(sys.argv) > 1 else "seqloop"
     frames = int(sys.argv[2]) if len(sys.argv) > 2 else 2_000
     random = numpy.random.default_rng(1)
