@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,17 +51,25 @@ struct LogFrame {
   std::span<const char> bytes;  ///< of the page
 };
 
+using Head = std::array<char, 32>;
+
+/// The head of a log, with which it begins anew; nothing where there is none.
+std::optional<Head> head_of(std::istream& log) {
+  Head head{};
+  if (!log.read(head.data(), head.size())) return std::nullopt;
+  return head;
+}
+
 /// Hands over the frames that were written since the log began anew, and those that are damaged.
 /// Each is looked at by what stands in the one before it: so one that is not whole spoils no other.
-/// @return the head of the log; empty where there is none
-std::vector<char> each_frame(const fs::path& log,
-                             const std::function<void(const LogFrame&)>& take) {
-  constexpr std::size_t head_bytes = 32;
+/// @return the head of the log; nothing where there is none
+std::optional<Head> each_frame(const fs::path& log,
+                               const std::function<void(const LogFrame&)>& take) {
   constexpr std::size_t begin_bytes = 24;  // of a frame, before its page
   std::ifstream file(log, std::ios::binary);
-  std::vector<char> head(head_bytes);
-  if (!file.read(head.data(), head_bytes)) return {};
-  const std::span<const char> of_head = head;
+  const std::optional<Head> head = head_of(file);
+  if (!head) return std::nullopt;
+  const std::span<const char> of_head = *head;
   constexpr std::uint32_t magic = 0x377F0682;  // and 1 more where words begin with their high byte
   const bool big = big_endian(of_head) == magic + 1;
   Sums before = sums_at(of_head.subspan(24));
@@ -89,13 +98,14 @@ bool is_damaged_log(const fs::path& log) {
   constexpr int least = 2;
   bool whole = true;
   int ends = 0;
-  const std::vector<char> head = each_frame(log, [&](const LogFrame& frame) {
+  const std::optional<Head> head = each_frame(log, [&](const LogFrame& frame) {
     whole = whole && frame.whole;
     if (!whole && frame.whole && frame.ends_batch) ++ends;
   });
   if (ends < least) return false;
   // A writer may have begun it anew meanwhile.
-  return each_frame(log, [](const LogFrame&) {}) == head;
+  std::ifstream again(log, std::ios::binary);
+  return head_of(again) == head;
 }
 
 void put_log_into(const fs::path& file, const fs::path& log) {

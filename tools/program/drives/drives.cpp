@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "program/drives/ros_name.hpp"
 #include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
+#include "program/process/database_file.hpp"
 #include "program/process/say.hpp"
 #include "ros/wall_time.hpp"
 #include "seqloop/bags/bag.hpp"
@@ -58,14 +58,10 @@ std::size_t parse_count_to(std::string_view text, std::size_t most) {
 /// Refuses a map, which is no drive, before a reader of drives says that it knows no such format,
 /// and what has no bytes.
 void refuse_no_drive(const std::filesystem::path& path) {
-  constexpr std::string_view magic = "SQLite format 3";
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return;
   files::refuse_empty(path, "name a drive");
-  std::string start(magic.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (start != magic) return;
+  if (!is_database(path)) return;
   throw SetupError({path.string(), "is a map, or another database, and no drive",
                     "to localise in a map: --map " + path.string() + " --read-only"});
 }

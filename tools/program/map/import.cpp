@@ -56,23 +56,33 @@ std::vector<std::byte> jpeg_in(const fs::path& file) {
   return jpeg;
 }
 
-/// The bytes of a session's places.
+/// Where the bytes of a session's places begin in their file. Throws SetupError.
 /// @param bytes that they must be; nothing: it is not known
-std::vector<std::byte> places_in(const fs::path& file, const std::optional<std::uint64_t>& bytes) {
-  std::vector<std::byte> all = bytes_of(file);
-  std::string start;
-  for (const std::byte byte : std::span(all).first(std::min<std::size_t>(all.size(), 12))) {
-    start += std::to_integer<char>(byte);
-  }
-  const std::uint64_t from = files::npy_data_offset(start, file.string());
-  if (from > all.size())
-    throw SetupError({file.string(), "ends within its header", give_an_export});
-  if (bytes && all.size() - from != *bytes) {
+std::uint64_t begin_of_places(const fs::path& file, const std::optional<std::uint64_t>& bytes) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);  // of a pipe, an error
+  std::ifstream stream;
+  if (!error) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) throw SetupError({file.string(), "cannot be read", give_an_export});
+  std::array<char, 12> start{};
+  stream.read(start.data(), start.size());
+  const std::uint64_t from = files::npy_data_offset(
+      std::span(start).first(static_cast<std::size_t>(stream.gcount())), file.string());
+  if (from > size) throw SetupError({file.string(), "ends within its header", give_an_export});
+  if (bytes && size - from != *bytes) {
     throw SetupError(
         {file.string(), fmt::format("its numbers are not the {} of the places in places.csv",
                                     counted(*bytes, "byte"))});
   }
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(from));
+  return from;
+}
+
+/// The bytes of a session's places. Throws SetupError.
+std::vector<std::byte> places_in(const fs::path& file, std::uint64_t bytes) {
+  const std::uint64_t from = begin_of_places(file, bytes);
+  std::vector<std::byte> all = bytes_of(file);
+  const auto begin = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(from, all.size()));
+  all.erase(all.begin(), all.begin() + begin);
   return all;
 }
 
@@ -273,7 +283,7 @@ class Exported {
       stop_if_interrupted();
       std::optional<std::uint64_t> bytes;
       if (sizes) bytes = parts_[session].records.size() * map_.form.place_bytes;
-      faults.collect([&] { static_cast<void>(places_in(npy_of(session), bytes)); });
+      faults.collect([&] { static_cast<void>(begin_of_places(npy_of(session), bytes)); });
     }
     faults.refuse();
   }

@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
+#include "program/process/database_file.hpp"
 #include "seqloop/bags/bag.hpp"
 #include "seqloop/opencv/image_folder_source.hpp"
 
@@ -93,13 +92,6 @@ std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
       output.flag,
       fmt::format("writing {} would destroy an input ({})", output.path.string(), other.flag),
       "choose another name"};
-}
-
-bool is_database(const fs::path& path) {
-  constexpr std::string_view begins = "SQLite format 3";
-  std::array<char, begins.size()> head{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(head.data(), head.size()) && std::ranges::equal(head, begins);
 }
 
 /// Why an output is in the way of a map; nothing where it is not. While a map is written, files
