@@ -411,7 +411,7 @@ TEST(MapRecovery, TakesTheLogWithTheFile) {
   EXPECT_FALSE(fs::exists(folder.path() / "out.copy"));
 }
 
-/// A map of ten places, and in a log the eight batches of ten that a killed writer saved after
+/// A map without places, and in a log the eight batches of ten that a killed writer saved after
 /// them.
 class KilledMap {
  public:
