@@ -226,11 +226,12 @@ std::optional<SavedStatistics> MapFile::statistics(std::int64_t session) const {
     }
     const std::int64_t sum =
         row_checksum("statistics", session, row.integer(0), row.blob(1), row.blob(2));
-    if (sum != row.integer(3) || row.blob(1).size() != row.blob(2).size()) {
+    SavedStatistics saved{static_cast<std::uint64_t>(row.integer(0)), decode_doubles(row.blob(1)),
+                          decode_doubles(row.blob(2))};
+    if (sum != row.integer(3) || !fits(saved, state_->form.descriptor_size)) {
       throw SetupError(state_->damaged("the statistics of " + state_->session_name(session)));
     }
-    return SavedStatistics{static_cast<std::uint64_t>(row.integer(0)), decode_doubles(row.blob(1)),
-                           decode_doubles(row.blob(2))};
+    return saved;
   });
 }
 

@@ -268,6 +268,9 @@ class Copying {
         map_.begin_session(name, session.facts.began_ns, session.facts.settings);
     ++result_.sessions;
     std::uint64_t places = 0;
+    if (session.statistics && !fits(*session.statistics, map_.form().descriptor_size)) {
+      session.statistics.reset();
+    }
     const std::vector<PlaceRecord> kept = places_to_keep(session);
     const std::uint64_t frames =
         std::max(session.facts.frames, kept.empty() ? 0 : kept.back().frame + 1);
@@ -375,6 +378,9 @@ Recovered recover(const fs::path& in, const fs::path& out) {
   const std::string name = in.string();
   if (!fs::is_regular_file(in) || !std::ifstream(in)) {
     throw SetupError({name, "there is no such map, or it must not be read", "name a map"});
+  }
+  if (std::error_code error; fs::exists(out, error) && fs::file_size(out, error) != 0) {
+    throw SetupError({out.string(), "there is such a file already", "name a new one"});
   }
   try {
     const WithLog file(in, out);

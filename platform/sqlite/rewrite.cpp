@@ -101,6 +101,7 @@ void MapFile::forget(const std::string& session) {
 
 std::size_t MapFile::retire(const std::string& session, std::uint64_t first, std::uint64_t last,
                             std::span<const Successor> successors, std::uint64_t every) {
+  if (every == 0) throw std::invalid_argument("MapFile::retire: a visit for no frame");
   State& map = *state_;
   SessionFacts facts = named(*this, session);
   std::vector<SavedLink> visits;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 
 #include "sqlite/state.hpp"
 
@@ -18,6 +19,20 @@ void check_batch(const MapBatch& batch, const MapForm& form) {
       throw std::invalid_argument("MapFile::save: places that cannot follow each other");
     }
     before = &record;
+  }
+  for (const SavedLink& link : batch.links) {
+    if (std::max({link.frame, link.other, link.place.value_or(0)}) >= number_end ||
+        std::isnan(link.probability)) {
+      throw std::invalid_argument("MapFile::save: a link with a number or probability of none");
+    }
+  }
+  const auto is_none = [](std::uint64_t number) { return number >= number_end; };
+  if (std::ranges::any_of(batch.thumbnails, is_none, &SavedThumbnail::place) ||
+      batch.frames >= number_end) {
+    throw std::invalid_argument("MapFile::save: a number that none has");
+  }
+  if (batch.statistics != nullptr && !fits(*batch.statistics, form.descriptor_size)) {
+    throw std::invalid_argument("MapFile::save: statistics do not fit the descriptors");
   }
 }
 

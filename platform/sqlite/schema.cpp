@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sqlite/schema.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "sqlite/little_endian.hpp"
 
@@ -34,6 +36,15 @@ std::vector<std::byte> encode_doubles(std::span<const double> values) {
     store_u64(std::bit_cast<std::uint64_t>(values[i]), std::span(bytes).subspan(i * 8, 8));
   }
   return bytes;
+}
+
+bool fits(const SavedStatistics& statistics, std::uint64_t descriptor_size) {
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  const auto is_variance = [&](double value) { return is_number(value) && value >= 0.0; };
+  return statistics.mean.size() == statistics.variance.size() &&
+         (descriptor_size == 0 || statistics.mean.size() == descriptor_size) &&
+         std::ranges::all_of(statistics.mean, is_number) &&
+         std::ranges::all_of(statistics.variance, is_variance);
 }
 
 std::vector<double> decode_doubles(std::span<const std::byte> bytes) {

@@ -58,6 +58,9 @@ constexpr std::size_t most_block_bytes = std::size_t{4} << 20U;
   return fit < 1 ? 1 : fit > 65'536 ? 65'536 : fit;
 }
 
+/// Whether statistics are of descriptors of a size; 0: it is not known.
+[[nodiscard]] bool fits(const SavedStatistics& statistics, std::uint64_t descriptor_size);
+
 // Columns as they are in the file.
 [[nodiscard]] std::vector<std::byte> encode_records(std::span<const PlaceRecord> records);
 [[nodiscard]] std::vector<PlaceRecord> decode_records(std::span<const std::byte> bytes);

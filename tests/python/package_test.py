@@ -244,8 +244,11 @@ class Arrays(unittest.TestCase):
         for call, words in (
                 (lambda: seqloop.PlaceMap("many", 48), f"max_places: {whole}, not 'many'"),
                 (lambda: seqloop.PlaceMap(200, 48.5), f"descriptor_size: {whole}, not 48.5"),
-                (lambda: seqloop.PlaceMap(200, 2**64), f"descriptor_size: {whole}, not {2**64}"),
+                (lambda: seqloop.PlaceMap(200, 2**64), f"descriptor_size: {whole}, not as much as {2**64}"),
+                (lambda: seqloop.PlaceMap.open("m", 48, 2**63), f"max_places: {whole}, or None, not as much as"),
+                (lambda: self.detector.skip(2**64), f"frames: {whole} of 0 or more, not as much as {2**64}"),
                 (lambda: seqloop.PlaceMap(200, 48, "yes"), "close_loops: it must be True or False, not 'yes'"),
+                (lambda: seqloop.PlaceMap(200, 48, 3), "close_loops: it must be True or False, not 3"),
                 (lambda: seqloop.PlaceMap(200, 48, ds=rows[0]), "ds: a value of type list is not of its type"),
                 (lambda: seqloop.PlaceMap(200, 48, ds=self.query), "ds: a value of type ndarray is not of its type"),
                 (lambda: seqloop.PlaceMap.open(3, 48), "map: it must be the name of a file or folder, not 3"),
@@ -584,6 +587,7 @@ class SameAsTheProgram(unittest.TestCase):
         for truth, settings, words in ((numpy.zeros((3, 4), int), {}, r"\(3, 4\)"),
                                        (numpy.zeros((3, 2)), {}, "float64"),
                                        (-numpy.ones((3, 2), int), {}, "0 or more"),
+                                       (numpy.full((3, 2), 2**63, numpy.uint64), {}, "numbers of 2.63 or more"),
                                        ("/nowhere.csv", {"threshold_on": "speed", "toll": 3}, "(?s)toll.*speed.*/nowh"),
                                        (numpy.zeros((0, 2), int), {}, "truth")):
             with self.assertRaisesRegex(seqloop.SetupError, words):

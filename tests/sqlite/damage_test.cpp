@@ -357,6 +357,24 @@ TEST(MapRecovery, NeedsAMap) {
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
+TEST(MapRecovery, WritesOverNothing) {
+  const test::TemporaryFolder folder(in_memory());
+  const fs::path map = folder.path() / "map";
+  const fs::path other = folder.path() / "other";
+  for (const fs::path& file : {map, other}) {
+    MapFile made = MapFile::open(file, test::sample_form());
+    test::save_sample(made, made.begin_session("a", 0, ""), 0, 5);
+  }
+  fs::create_symlink(map, folder.path() / "link");
+  for (const fs::path& out : {map, folder.path() / "link", other}) {
+    const std::string refused = test::setup_error([&] { (void)sqlite::recover(map, out); });
+    EXPECT_TRUE(test::says(refused, "there is such a file already")) << out;
+  }
+  for (const fs::path& file : {map, other}) {
+    EXPECT_EQ(MapFile::read_only(file).sessions().size(), 1U);
+  }
+}
+
 /// A map of sessions with five places each. @return what the map knows of the last
 sqlite::SessionFacts make(const fs::path& file, std::initializer_list<const char*> names) {
   MapFile map = MapFile::open(file, test::sample_form());

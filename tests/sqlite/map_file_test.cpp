@@ -10,6 +10,7 @@
 #include <array>
 #include <csignal>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -278,6 +279,28 @@ TEST_F(Map, RefusesBatchesThatDoNotFit) {
         << one << ", " << other;
   }
   EXPECT_THROW(map.save(first + 1, {}), std::invalid_argument);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> five(5, 1.0);
+  for (const auto& [mean, variance] :
+       std::vector<std::pair<std::vector<double>, std::vector<double>>>{
+           {{1, 2}, {1, 2}},
+           {five, {1}},
+           {five, {1, 1, 1, 1, -1}},
+           {five, {1, 1, 1, 1, nan}},
+           {{1, 1, 1, 1, nan}, five}}) {
+    const sqlite::SavedStatistics statistics{1, mean, variance};
+    EXPECT_THROW(map.save(first, {.frames = 6, .statistics = &statistics}), std::invalid_argument);
+  }
+  constexpr std::uint64_t none = sqlite::number_end;
+  for (const sqlite::SavedLink& link : std::vector<sqlite::SavedLink>{
+           {0, none, 1, 0, .9}, {0, 1, none, 0, .9}, {0, 1, 1, none, .9}, {0, 1, 1, 0, nan}}) {
+    EXPECT_THROW(map.save(first, {.frames = 6, .links = std::span(&link, 1)}),
+                 std::invalid_argument);
+  }
+  const std::array<sqlite::SavedThumbnail, 1> picture{{{none, place}}};
+  EXPECT_THROW(map.save(first, {.frames = 6, .thumbnails = picture}), std::invalid_argument);
+  EXPECT_THROW(map.save(first, {.frames = none}), std::invalid_argument);
+  EXPECT_THROW((void)map.retire("a", 0, 4, {}, 0), std::invalid_argument);
   EXPECT_EQ(content(map), before);
   const std::string fault = setup_error([&] { (void)map.begin_session("a", 0, ""); });
   EXPECT_TRUE(says(fault, "there is a session 'a' already"));

@@ -169,11 +169,15 @@ class type_caster<seqloop::python::Argument<Value, argument>> {
   /// Throws type_error. What was made null by None would be used.
   bool load(handle given, bool convert) {
     make_caster<Value> inner;
-    bool taken = inner.load(given, convert);
+    // Anything has a truth value, but True and False are meant.
+    bool taken = inner.load(given, convert && !std::is_same_v<Value, bool>);
     if constexpr (requires { typename Value::element_type; }) taken = taken && !given.is_none();
     if (!taken) {
-      throw type_error(std::string(argument.text) + ": it must be " +
-                       seqloop::python::wanted<Value>() + ", not " + seqloop::python::shown(given));
+      const std::string wanted = seqloop::python::wanted<Value>();
+      const bool large =
+          wanted.starts_with("a whole") && isinstance<int_>(given) && given > int_(0);
+      throw type_error(std::string(argument.text) + ": it must be " + wanted + ", not " +
+                       (large ? "as much as " : "") + seqloop::python::shown(given));
     }
     value.value = cast_op<Value>(std::move(inner));
     return true;

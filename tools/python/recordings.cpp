@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -121,6 +122,10 @@ std::string table_of(const Array& truth) {
                       "it is " + py::str(truth.dtype()).cast<std::string>() + " of shape " +
                           py::str(truth.attr("shape")).cast<std::string>(),
                       "give integers of 0 or more, [T, 2] or [T, 3]: query, reference, tolerance"});
+  }
+  if (py::int_(truth.attr("max")(py::arg("initial") = 0)) >
+      py::int_(std::numeric_limits<std::int64_t>::max())) {
+    throw SetupError({"truth", "it holds numbers of 2^63 or more", "give numbers of frames"});
   }
   const py::array_t<std::int64_t> rows(truth);
   std::string table = rows.shape(1) == 3 ? "query,reference,tolerance\n" : "query,reference\n";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -33,27 +34,19 @@ using sqlite::MapFile;
 using sqlite::PlaceRecord;
 using sqlite::SavedLink;
 
-std::vector<std::byte> bytes_of(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);  // of a pipe, an error
-  std::ifstream stream;
-  if (!error) stream.open(file, std::ios::binary);
-  std::vector<std::byte> bytes(error ? 0 : static_cast<std::size_t>(size));
-  if (error || !stream.read(reinterpret_cast<char*>(bytes.data()),
-                            static_cast<std::streamsize>(bytes.size()))) {
-    throw SetupError({file.string(), "cannot be read", give_an_export});
-  }
-  return bytes;
+/// A file of any size. Throws SetupError.
+std::string bytes_of(const fs::path& file) {
+  return files::read_bytes(file, std::numeric_limits<std::uintmax_t>::max());
 }
 
 /// A place's picture, which others show as they are told.
 std::vector<std::byte> jpeg_in(const fs::path& file) {
-  constexpr std::array start{std::byte{0xFF}, std::byte{0xD8}, std::byte{0xFF}};
-  std::vector<std::byte> jpeg = bytes_of(file);
-  if (std::ranges::mismatch(start, jpeg).in1 != start.end()) {
+  const std::string jpeg = bytes_of(file);
+  if (!jpeg.starts_with("\xFF\xD8\xFF")) {
     throw SetupError({file.string(), "is no JPEG picture", "replace it, or remove it"});
   }
-  return jpeg;
+  const auto bytes = std::as_bytes(std::span(jpeg));
+  return {bytes.begin(), bytes.end()};
 }
 
 /// Where the bytes of a session's places begin in their file. Throws SetupError.
@@ -75,15 +68,6 @@ std::uint64_t begin_of_places(const fs::path& file, const std::optional<std::uin
                                     counted(*bytes, "byte"))});
   }
   return from;
-}
-
-/// The bytes of a session's places. Throws SetupError.
-std::vector<std::byte> places_in(const fs::path& file, std::uint64_t bytes) {
-  const std::uint64_t from = begin_of_places(file, bytes);
-  std::vector<std::byte> all = bytes_of(file);
-  const auto begin = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(from, all.size()));
-  all.erase(all.begin(), all.begin() + begin);
-  return all;
 }
 
 /// What belongs to one session.
@@ -117,11 +101,15 @@ class Exported {
       const DescribedSession& session = (*map_.sessions)[i];
       const Part part = std::move(parts_[i + 1]);
       const std::int64_t id = map.begin_session(session.name, session.began_ns, session.settings);
-      const std::vector<std::byte> places =
-          places_in(npy_of(i + 1), part.records.size() * map.form().place_bytes);
+      const fs::path file = npy_of(i + 1);
+      const std::uint64_t from =
+          begin_of_places(file, part.records.size() * map.form().place_bytes);
+      const std::string places = bytes_of(file);
       map.save(id, {.frames = session.frames,
                     .records = part.records,
-                    .places = places,
+                    .places = std::as_bytes(std::span(places))
+                                  .subspan(std::min<std::uint64_t>(
+                                      from, places.size())),  // it may have become shorter
                     .links = part.links,
                     .thumbnails = part.thumbnails,
                     .statistics = session.statistics ? &*session.statistics : nullptr});

@@ -206,9 +206,9 @@ def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.
     """The difference matrix, [N, M]: how far each place (row) is from each frame (column), 0 to 2.
 
     By the same arithmetic as the matcher's, with standardised features unless standardise=False. A frame
-    that could not be read (NaN, infinity, zeros) repeats the column before it; before the first that could,
-    columns are NaN. For looking at it, and for code that wants a similarity matrix (its negative): the
-    matcher itself never keeps it whole.
+    of the query that could not be read (NaN, infinity, zeros) repeats the column before it; before the first
+    that could, columns are NaN. For looking at it, and for code that wants a similarity matrix (its
+    negative): the matcher itself never keeps it whole.
     Errors: SetupError.
     """
     faults = _core.drive_faults(reference, "reference") + _core.drive_faults(query, "query")

@@ -205,7 +205,8 @@ class MapFile {
   /// @param session the newest one gives numbers from `next_place` on. An earlier one may grow as
   ///   well where there is room: above its places' numbers, and below those of all later sessions
   /// Throws SaveError: disk full, not writable, …: nothing of it is saved, the map is as before.
-  /// std::invalid_argument: another session, numbers, frames or sizes that do not fit.
+  /// std::invalid_argument: another session; bytes, places or statistics that do not fit; numbers
+  /// from `number_end` on, a probability that is NaN.
   void save(std::int64_t session, const MapBatch& batch);
 
   /// Removes a session with its places, thumbnails and links, and all visits of it. Other places
@@ -219,7 +220,8 @@ class MapFile {
   /// @param first, last numbers of the places that go, both included
   /// @param successors of them, rising; those that have none leave no visit
   /// @param every frames that one visit is for, 1 or more: that of the first of them is kept
-  /// @return visits that are kept. Throws SetupError: no such name, damaged; SaveError.
+  /// @return visits that are kept. Throws SetupError: no such name, damaged; SaveError;
+  ///   std::invalid_argument: `every` is 0.
   std::size_t retire(const std::string& session, std::uint64_t first, std::uint64_t last,
                      std::span<const Successor> successors, std::uint64_t every);
 

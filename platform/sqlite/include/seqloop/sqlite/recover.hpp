@@ -22,8 +22,9 @@ struct Recovered {
 /// cannot follow each other, as few as possible are left out. Places keep their numbers; sessions
 /// are numbered anew. The damaged file is only read.
 /// @param in a map, with its log beside it where there is one
-/// @param out a new file, written bit by bit: it is whole when this returns
-/// Throws SetupError: not readable, nothing whole in it; SaveError. Work: the file, three times.
+/// @param out a new file, or an empty one, written bit by bit: it is whole when this returns
+/// Throws SetupError: not readable, nothing whole in it, `out` is there already; SaveError. Work:
+/// the file, three times.
 [[nodiscard]] Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out);
 
 }  // namespace seqloop::sqlite
