@@ -123,7 +123,7 @@ std::span<const CandidateProposals::Alike> CandidateProposals::best_of_scan(
   const std::size_t to_the_end = std::min(bits.size(), rows - begin);
   scan(queries, map, begin, bits.first(to_the_end));
   scan(queries, map, 0, bits.subspan(to_the_end));
-  scan_ = {begin, bits};
+  scan_ = bits;
   next_ = (begin + bits.size()) % rows;
   std::size_t found = 0;
   for (std::size_t first = 0; first < bits.size(); first += neighbours) {

@@ -395,8 +395,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
     return;
   }
   pending_.forget_evidence();
-  const std::uint64_t steps = told_.empty() ? frames : keyframes_.in(frames);
-  keyframes_.skip(frames);
+  const std::uint64_t steps = told_.empty() ? frames : keyframes_.skip(frames);
   steps_.skip(frames, steps);
   if (steps == 0) return;
   for (std::uint64_t step = 0; step < steps; ++step) {
@@ -429,7 +428,7 @@ void Detector::restart() noexcept {
 /// the frame before when there is nothing to take.
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
-    keyframes_.skip(1);
+    keyframes_.unread();
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     ++unread_;

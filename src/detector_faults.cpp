@@ -40,7 +40,8 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
          "give it room for the drive that is added, too"});
   }
   if (map.rows().form() != DescriptorForm(config, map.descriptor_size()) ||
-      map.full_map() != config.full_map) {
+      map.full_map() != config.full_map ||
+      map.knows_visits() != (config.decision == Decision::probability)) {
     faults.push_back(
         {"map", "it was made for another configuration",
          "give both the same arithmetic, difference, candidates, relocalising, decision "

@@ -173,8 +173,7 @@ Faults validate(const MatcherConfig& config) {
 }
 
 Faults validate(const Capacity& capacity, const MatcherConfig& config) {
-  constexpr auto most_places = static_cast<std::size_t>(
-      std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
+  constexpr std::size_t most_places = std::numeric_limits<std::uint32_t>::max();
   Faults faults;
   check_range(faults, "places", capacity.places, 1, most_places);
   check_range(faults, "descriptor_size", capacity.descriptor_size, 1, std::size_t{1} << 22U);

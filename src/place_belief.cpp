@@ -131,7 +131,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const double born = comes * std::min(1.0, 4.0 * scene->novelty) * new_place_;
   const std::optional<std::size_t> led_to = std::exchange(expected_, std::nullopt);
   const double by_line = led_to && *led_to < view.rows ? where_it_leads * born : 0.0;
-  const double each = (born - by_line) / static_cast<double>(view.seen->scanned().bits.size());
+  const double each = (born - by_line) / static_cast<double>(view.seen->scanned().size());
   // In a drive's own map what is believed less than a row that is found anew will be found again.
   move(view.map->order(), *scene, jumps, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
@@ -354,7 +354,8 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     gains[i] = l;
     at.told = w * l;
     at.step = unknown;
-    if (const auto from = came_from(order, at); from && frames.before) {
+    // Where all rows that were scanned show what the frame does, no change tells them apart.
+    if (const auto from = came_from(order, at); from && frames.before && scene.mean > 0.0) {
       at.step = in_step(scene, *view.map, frames, gain, *from, sketches_);
       at.in_step += most_forgotten * (at.step - at.in_step);
     }

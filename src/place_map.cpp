@@ -140,9 +140,10 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
                                                        const Saved& place) noexcept {
   if (session >= order_.sessions()) return std::nullopt;
   const auto [first, last] = order_.session(session);
-  const bool follows = order_.may_give(session, place.number) &&
+  const bool follows = std::max(place.number, place.frame) < number_end &&
+                       order_.may_give(session, place.number) &&
                        (first == last || place.frame > order_.frame(last - 1)) &&
-                       (last == size() || full_map_ != FullMap::refuse);
+                       (session + 1 == order_.sessions() || full_map_ != FullMap::refuse);
   const std::size_t slot = order_.next_slot();
   if (size() == capacity() || !follows || !rows_.load(slot, place.descriptor)) return std::nullopt;
   order_.insert(session, place.frame, place.number);
@@ -232,7 +233,7 @@ PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
 
 std::optional<std::size_t> PlaceMap::row_to_go(std::size_t keep) noexcept {
   if (full_map_ == FullMap::refuse || size() <= keep) return std::nullopt;
-  if (full_map_ == FullMap::forget_oldest) return 0;
+  if (full_map_ == FullMap::forget_oldest || size() == 1) return 0;
   // The first and the last row of what may go have no two neighbours. Nor have those of a session:
   // one of them goes only where there is no other.
   const std::size_t last = size() - std::max<std::size_t>(keep, 1);

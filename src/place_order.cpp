@@ -65,7 +65,14 @@ std::size_t PlaceOrder::append(std::uint64_t frame, std::uint64_t number) noexce
 std::size_t PlaceOrder::insert(std::size_t session, std::uint64_t frame,
                                std::uint64_t number) noexcept {
   const std::size_t row = this->session(session).last;
-  if (row == size_) return append(frame, number);
+  if (row == size_) {
+    // Sessions behind this one may have been begun, of which no row has come yet.
+    const std::uint64_t next = next_;
+    const std::size_t slot = append(frame, number);
+    count_from(next);
+    for (Begin& begin : begins_.first(sessions_).subspan(session + 1)) ++begin.row;
+    return slot;
+  }
   straight_ = false;
   const std::size_t slot = free_slot_;
   if (row < size_ / 2) {

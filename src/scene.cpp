@@ -55,7 +55,7 @@ SceneGauge::SceneGauge(Arena& arena, bool used)
           "histogram of a scan", used ? static_cast<std::size_t>(scanned_bits) + 1 : 0)) {}
 
 std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketches) noexcept {
-  const std::span<const std::uint32_t> bits = view.seen->scanned().bits;
+  const std::span<const std::uint32_t> bits = view.seen->scanned();
   if (view.rows < least_rows || bits.size() < std::min(least_rows, view.rows)) return std::nullopt;
   std::ranges::fill(histogram_, 0U);
   for (const std::uint32_t b : bits) ++histogram_[b];

@@ -55,7 +55,7 @@ class Detector {
   /// @param map lives longer than the detector. To localise: filled (and standardised, where the
   ///   configuration standardises), and linked by a `VisitFinder` where it holds a drive that
   ///   passed places more than once. To close loops: empty, or filled with earlier sessions; the
-  ///   drive becomes another one, to which the steps add.
+  ///   drive becomes another one, to which the steps add: one such detector at a time has a map.
   /// @param memory [bytes_needed(config, map's capacity)] aligned to Arena::alignment; empty: own
   /// Errors: SetupError, all faults at once.
   Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::byte> memory = {});

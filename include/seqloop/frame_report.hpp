@@ -38,7 +38,8 @@ struct Match {
   /// the place, which evidence over time speaks for.
   float score = 0.0F;
   /// Score by the runner-up's score: 0 .. 1; above 1 or infinite when the runner-up of the last
-  /// full search had to stand in and is better; NaN where not defined.
+  /// full search had to stand in and is better, or evidence over time speaks for another line than
+  /// the best; NaN where not defined.
   float uniqueness = 0.0F;
   double velocity = 0.0;   ///< rows a keyframe; NaN for single frames, and without a line
   std::uint64_t head = 0;  ///< the place at the newest column
@@ -98,7 +99,8 @@ struct FrameReport {
   std::optional<Belief> now;  ///< of the newest frame; none before places can be compared
 
   std::uint64_t newest = 0;  ///< the frame that was stepped, from 0
-  /// The last of `answers`, where there are any; then its gate and match.
+  /// The last of `answers`, where there are any; then its gate and match. By uniqueness also the
+  /// centre of a window that is not whole yet, which has no answer.
   std::optional<std::uint64_t> frame;
   Gate gate = Gate::frame_error;  ///< without an answer `warming_up`, `waiting`, or `frame_error`
   std::optional<Match> match;

@@ -67,10 +67,13 @@ class PlaceMap {
   /// Work: 9 D, and the sketch. Allocates: never.
   [[nodiscard]] bool add(std::span<const float> descriptor) noexcept;
 
+  /// Numbers and frames lie below it.
+  static constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
+
   /// A place as it was saved.
   struct Saved {
-    std::uint64_t number = 0;                 ///< above that of the place before it
-    std::uint64_t frame = 0;                  ///< of its session, above that of the place before it
+    std::uint64_t number = 0;  ///< above that of the place before it, below `number_end`
+    std::uint64_t frame = 0;   ///< of its session, above that of the place before it, as far below
     std::span<const std::byte> descriptor{};  ///< as `rows().save` gave it
   };
 
@@ -96,7 +99,7 @@ class PlaceMap {
                                                         const Saved& place) noexcept;
 
   /// The next place gets this number, or a higher one if that is its turn: places that went from a
-  /// map that was saved do not give theirs to others.
+  /// map that was saved do not give theirs to others. @param number `number_end` at most
   void count_from(std::uint64_t number) noexcept { order_.count_from(number); }
 
   /// Takes over the statistics of the newest session, or what is known of descriptors before there
@@ -142,6 +145,9 @@ class PlaceMap {
   [[nodiscard]] std::uint64_t first_visit(std::size_t row) const noexcept {
     return first_visits_.empty() ? order_.number(row) : first_visits_[order_.slot(row)];
   }
+
+  /// Whether visits of one place are linked, as where the probability decides.
+  [[nodiscard]] bool knows_visits() const noexcept { return !first_visits_.empty(); }
 
   /// What `first_visit` gives from here on: as it was before the map was saved, or as a
   /// `VisitFinder` found it.

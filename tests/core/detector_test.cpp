@@ -521,6 +521,21 @@ TEST(Detector, SaysWhenTheMapIsFullAndKeepsAnswering) {
   EXPECT_EQ(map.size(), 200U);
 }
 
+/// By uniqueness a map keeps no visits of one place, by which a probability goes.
+TEST(Detector, RefusesAMapThatWasMadeForTheOtherDecision) {
+  MatcherConfig by_probability{.use = Use::close_loops};
+  MatcherConfig by_uniqueness = by_probability;
+  by_uniqueness.decision = Decision::uniqueness;
+  for (const auto& [own, other] :
+       {std::pair(by_probability, by_uniqueness), std::pair(by_uniqueness, by_probability)}) {
+    PlaceMap map(own, {200, 16});
+    EXPECT_NO_THROW(const Detector detector(own, map));
+    const auto& wrong = other;
+    EXPECT_TRUE(test::says(test::setup_error([&] { const Detector detector(wrong, map); }),
+                           "it was made for another configuration"));
+  }
+}
+
 TEST(Detector, ListsEveryFaultOfItsSetUp) {
   MatcherConfig config;
   config.sequence_length = 2'001;
@@ -618,8 +633,7 @@ TEST(Validate, TakesTheEdgesAndRefusesWhatLiesBeyond) {
             }),
             1U);
   const MatcherConfig exact = paper(Candidates::all, 20);
-  constexpr auto most_places = static_cast<std::size_t>(
-      std::min<std::uint64_t>(std::uint64_t{1} << 32U, std::numeric_limits<std::size_t>::max()));
+  constexpr std::size_t most_places = std::numeric_limits<std::uint32_t>::max();
   EXPECT_EQ(validate(Capacity{0, 0}, exact).size(), 2U);
   EXPECT_EQ(validate(Capacity{most_places, std::size_t{1} << 22U}, exact).size(), 0U);
   EXPECT_EQ(validate(Capacity{1, most_small_values}, {}).size(), 0U);

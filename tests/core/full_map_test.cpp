@@ -386,6 +386,24 @@ TEST(FullMap, TheEndsOfSessionsStayWhereOtherRowsMayGo) {
   }
 }
 
+TEST(FullMap, OfOnePlaceLeavesRoomForAnother) {
+  for (const FullMap how : {FullMap::forget_oldest, FullMap::thin}) {
+    MatcherConfig config{.use = Use::close_loops, .full_map = how};
+    PlaceMap map(config, {1, 16});
+    const oracle::Vectors drive = oracle::drive(7, 3, 16);
+    ArenaMemory memory(1 << 20, {});
+    Arena arena(memory.span());
+    QueryHistory queries(arena, DescriptorForm(config, 16), 4);
+    for (std::uint64_t frame = 0; frame < drive.size(); ++frame) {
+      queries.push(drive[static_cast<std::size_t>(frame)]);
+      const PlaceMap::Taken taken = map.take(queries.rows(), queries.row_of(frame), frame, 0);
+      EXPECT_EQ(taken.slot, 0U);
+      EXPECT_EQ(taken.removed.has_value(), frame > 0);
+    }
+    EXPECT_EQ(map.order().frame(0), 2U);
+  }
+}
+
 TEST(FullMap, AllPlacesMayBeNeeded) {
   MatcherConfig config;
   config.use = Use::close_loops;

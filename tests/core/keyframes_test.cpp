@@ -172,6 +172,42 @@ TEST(Keyframes, AreFoundLateWhereADriveBeginsFast) {
 }
 
 // The same frames are few beside a map whose places differ much, and all beside one like them.
+TEST(Keyframes, OfADriveDoNotDependOnTheOneBefore) {
+  constexpr double variance = 0.5;
+  const Vectors drive = oracle::drive(3, 60, 16, 0.05F);
+  ArenaMemory memory(1 << 16, {});
+  Arena arena(memory.span());
+  Keyframes keyframes(arena, drive.front().size());
+  const auto take_all = [&] {
+    std::vector<bool> are;
+    for (const auto& descriptor : drive) are.push_back(keyframes.take(descriptor, variance));
+    return are;
+  };
+  const std::vector<bool> alone = take_all();
+  EXPECT_TRUE(keyframes.take(oracle::drive(4, 1, 16).front(), variance));
+  EXPECT_TRUE(keyframes.take(drive.front(), variance)) << "as the next drive begins";
+  keyframes.begin();
+  EXPECT_EQ(take_all(), alone);
+}
+
+TEST(Keyframes, ThatNeverCameAreAsManyInOneCallAsInSeveral) {
+  const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 8, 1);
+  ArenaMemory memory(1 << 16, {});
+  Arena arena(memory.span());
+  Keyframes once(arena, slow.front().size());
+  Keyframes often(arena, slow.front().size());
+  const double variance = variance_of(slow);
+  for (const auto& descriptor : slow) {
+    ASSERT_EQ(once.take(descriptor, variance), often.take(descriptor, variance));
+  }
+  ASSERT_TRUE(once.is_dense());
+  std::uint64_t sum = 0;
+  for (int frame = 0; frame < 16; ++frame) sum += often.skip(1);
+  EXPECT_GT(sum, 2U);
+  EXPECT_LT(sum, 16U);
+  EXPECT_EQ(once.skip(16), sum);
+}
+
 TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
   const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 3, 1);
   const double variance = variance_of(slow);
@@ -235,6 +271,30 @@ TEST(FrameSteps, MakeOneStopOfTwoWithAFrameBetween) {
     EXPECT_EQ(stop->came, 5U);
     EXPECT_EQ(stop->left, 13U);
     EXPECT_TRUE(stop->seen_to_come);
+  }
+}
+
+TEST(FrameSteps, MakeAStopAsLongBeforeWhereItStoodForLongAsAfterIt) {
+  for (const bool before : {true, false}) {
+    const Memory memory;
+    FrameSteps steps = memory.steps(64, 128);
+    std::uint64_t frames = 0;
+    const auto stand = [&](std::uint64_t count) {
+      steps.take(true, something_new);
+      for (std::uint64_t frame = 1; frame < count; ++frame) steps.repeat();
+      frames += count;
+    };
+    for (int step = 0; step < 15; ++step) stand(1);
+    for (int step = 0; before && step < 10; ++step) stand(2);
+    const std::uint64_t long_one = before ? 25 : 15;
+    stand(6);
+    for (int step = 0; !before && step < 10; ++step) stand(2);
+    const std::uint64_t end = frames;
+    for (int step = 0; step < 5; ++step) stand(1);
+    const auto stop = steps.stop_at(long_one);
+    ASSERT_TRUE(stop);
+    EXPECT_EQ(stop->came, 15U);
+    EXPECT_EQ(stop->left, end);
   }
 }
 

@@ -48,7 +48,7 @@ class NaiveBelief {
     const auto t = static_cast<std::size_t>(view.newest);
     // 6.1
     std::vector<double> shares;
-    for (const std::uint32_t bits : view.seen->scanned().bits) shares.push_back(bits / 256.0);
+    for (const std::uint32_t bits : view.seen->scanned()) shares.push_back(bits / 256.0);
     const auto n = static_cast<double>(shares.size());
     double mu = 0.0;
     for (const double s : shares) mu += s / n;
@@ -161,7 +161,7 @@ class NaiveBelief {
       at.step = std::numeric_limits<double>::quiet_NaN();
       if (t >= 8 && at.way.size() > 8) {
         const std::size_t from = at.way[at.way.size() - 9];
-        if (from + 2 <= row && row <= from + 16) {
+        if (from + 2 <= row && row <= from + 16 && mu > 0.0) {
           const auto c = [&](std::size_t there, std::size_t frame) {
             return std::pow(chord(share(frame, there)), 2);
           };

@@ -717,6 +717,27 @@ TEST(PlaceBelief, NothingSpeaksForAFrameThatWasNotSeenOrADriveThatHasEnded) {
   EXPECT_FALSE(detector.evidence());
 }
 
+/// While all rows that are scanned show what the frame does, nothing is known of how places change.
+TEST(PlaceBelief, OfPlacesThatAreTheSameIsAProbability) {
+  MatcherConfig config = settings(Use::localise);
+  config.keyframes = false;
+  config.standardisation.on = false;
+  config.relocalising.rows_scanned = 50;
+  oracle::Vectors drive = way(12, 200, 0.5F, 1);
+  std::fill(drive.begin(), drive.begin() + 120, drive.front());
+  PlaceMap map(config, {drive.size(), size});
+  for (const std::vector<float>& place : drive) ASSERT_TRUE(map.add(place));
+  Detector detector(config, map);
+  std::size_t believed = 0;
+  for (std::size_t frame = 0; frame < 2 * drive.size(); ++frame) {
+    const FrameReport report = detector.step(drive[frame % drive.size()]);
+    if (!report.now) continue;
+    ++believed;
+    EXPECT_TRUE(report.now->probability >= 0.0F && report.now->probability <= 1.0F) << frame;
+  }
+  EXPECT_GT(believed, drive.size());
+}
+
 TEST(PlaceBelief, TakesAnything) {
   const std::vector<float> constant(size, 1.0F / 16.0F);
   const oracle::Vectors alike(200, constant);

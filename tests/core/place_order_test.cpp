@@ -70,6 +70,23 @@ TEST(PlaceOrder, EqualsAListWhoeverGoes) {
   }
 }
 
+TEST(PlaceOrder, ASessionThatHasNoPlaceYetTakesNoneOfTheOneBeforeIt) {
+  TestArena memory;
+  PlaceOrder order(memory.arena, 10, 2);
+  order.append(0, 0);
+  order.count_from(100);
+  ASSERT_TRUE(order.begin_session());
+  order.insert(0, 1, 1);
+  EXPECT_EQ(order.session(0).last, 2U);
+  EXPECT_EQ(order.session(1).first, 2U);
+  EXPECT_EQ(order.session(1).last, 2U);
+  EXPECT_EQ(order.next_number(), 100U);
+  EXPECT_EQ(order.session_of_number(1), 0U);
+  order.append(0);
+  EXPECT_EQ(order.session(1).last, 3U);
+  EXPECT_EQ(order.number(2), 100U);
+}
+
 TEST(PlaceOrder, IsStraightUntilAPlaceGoes) {
   TestArena memory;
   PlaceOrder order(memory.arena, 3, 1);

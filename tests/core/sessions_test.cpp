@@ -468,6 +468,8 @@ TEST(MapOfSessions, PutBackOnlyWhatFits) {
   beyond[2] = std::byte{0x80};
   EXPECT_FALSE(map.add_saved({0, 0, std::span(place).first(3)}));
   EXPECT_FALSE(map.add_saved({0, 0, beyond})) << "-128 is no value of a place";
+  EXPECT_FALSE(map.add_saved({PlaceMap::number_end, 0, place})) << "the next would have none";
+  EXPECT_FALSE(map.add_saved({0, PlaceMap::number_end, place}));
   EXPECT_TRUE(map.add_saved({7, 3, place}));
   EXPECT_FALSE(map.add_saved({7, 4, place})) << "numbers ascend";
   EXPECT_FALSE(map.add_saved({8, 3, place})) << "frames ascend";

@@ -219,6 +219,28 @@ TEST(TakeIn, NothingForASessionThatIsNotThere) {
   EXPECT_EQ(map.size(), 1U);
 }
 
+/// Another robot's place comes before the first step of the drive that is added.
+TEST(TakeIn, IsOfItsSessionWhereTheNextHasNoPlaceYet) {
+  MatcherConfig config{.use = Use::close_loops, .full_map = FullMap::thin};
+  PlaceMap map(config, {100, 16, 2});
+  const Vectors drive = oracle::drive(1, 60, 16);
+  for (std::size_t i = 0; i < 30; ++i) ASSERT_TRUE(map.add(drive[i]));
+  std::vector<std::byte> saved(map.rows().saved_size());
+  map.rows().save(3, saved);
+  map.count_from(apart);
+  Detector detector(config, map);
+  const std::size_t places = map.size();
+  const std::uint64_t next = map.order().number(places - 1) + 1;
+  ASSERT_TRUE(detector.take_in(0, {next, 100, saved}));
+  EXPECT_EQ(map.order().session(0).last, places + 1);
+  for (const auto& descriptor : drive) static_cast<void>(detector.step(descriptor));
+  const CandidateRun own = map.order().session(1);
+  ASSERT_EQ(own.first, places + 1);
+  ASSERT_GT(own.last, own.first);
+  EXPECT_EQ(map.order().number(own.first), apart);
+  EXPECT_EQ(map.order().frame(own.first), 0U);
+}
+
 TEST(TakeIn, AMapThatKeepsOrderTakesInNothingBetween) {
   const MatcherConfig config;
   PlaceMap map(config, {4, 4, 2});
@@ -226,6 +248,7 @@ TEST(TakeIn, AMapThatKeepsOrderTakesInNothingBetween) {
   EXPECT_EQ(map.add_saved_to(0, {0, 0, place}), 0U);
   map.count_from(10);
   ASSERT_TRUE(map.begin_session());
+  EXPECT_EQ(map.add_saved_to(0, {1, 1, place}), std::nullopt) << "another has been begun";
   EXPECT_EQ(map.add_saved_to(1, {10, 0, place}), 1U);
   EXPECT_EQ(map.add_saved_to(0, {1, 1, place}), std::nullopt);
 }

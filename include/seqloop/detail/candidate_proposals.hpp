@@ -41,12 +41,8 @@ class CandidateProposals {
   Looks look(const QueryHistory& queries, const PlaceMap& map, std::size_t rows,
              std::uint64_t newest, std::uint64_t oldest) noexcept;
 
-  /// What the last call scanned.
-  struct Scan {
-    std::size_t first = 0;                ///< row that it began at; behind the last follows row 0
-    std::span<const std::uint32_t> bits;  ///< of the scanned words that differ, row by row
-  };
-  [[nodiscard]] const Scan& scanned() const noexcept { return scan_; }
+  /// Of the rows that the last call scanned, in turn: how many bits of the scanned words differ.
+  [[nodiscard]] std::span<const std::uint32_t> scanned() const noexcept { return scan_; }
 
   /// A row that the newest frame may show.
   struct Alike {
@@ -113,7 +109,7 @@ class CandidateProposals {
   std::size_t count_ = 0;
   std::size_t found_ = 0;
   std::uint64_t newest_ = 0;
-  Scan scan_;
+  std::span<const std::uint32_t> scan_;
   std::span<Alike> remembered_;    // [most], best first
   std::span<Alike> best_;          // of the scan, best first
   std::span<Proposal> proposals_;  // [most], what is remembered along the window, best first

@@ -93,7 +93,7 @@ class FrameSteps {
   [[nodiscard]] std::optional<Stop> stop_at(std::uint64_t step) const noexcept {
     const std::uint64_t begin = step - std::min(step, StopRun::reach);
     const auto run = StopRun::around(
-        step, begin, std::min(steps_, step + StopRun::reach), [this](std::uint64_t one) {
+        step, begin, std::min(steps_, step + StopRun::reach + 1), [this](std::uint64_t one) {
           return repeats(one) ? std::max<std::uint64_t>(frames_in(one), 2) - 1 : 0;
         });
     if (!run) return std::nullopt;

@@ -36,6 +36,9 @@ class Keyframes {
     since_change_ = 0;
     usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
+    unseen_ = 0.0;
+    std::ranges::fill(last_change_, 0.0F);
+    last_is_change_ = true;
   }
 
   /// It is matched with a map. @param spacing how unlike neighbours among its places usually are: 1
@@ -50,6 +53,7 @@ class Keyframes {
   /// @return whether it is a keyframe
   /// Work: 2 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
+    unseen_ = 0.0;
     const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense_;
     const double from_change = squared_distance(last_change_, descriptor);
@@ -72,13 +76,18 @@ class Keyframes {
   /// Whether it changed so from the keyframe before the newest one to that.
   [[nodiscard]] bool is_cut() const noexcept { return since_cut_ == 0; }
 
-  /// Frames that never came count as frames that did.
-  void skip(std::uint64_t frames) noexcept { since_change_ += frames; }
+  /// A frame could not be read: it counts as one that was.
+  void unread() noexcept { ++since_change_; }
 
-  /// How many keyframes as many frames are, by what is usual.
-  [[nodiscard]] std::uint64_t in(std::uint64_t frames) const noexcept {
+  /// Frames that never came count as frames that did.
+  /// @return how many keyframes they are by what is usual, of several calls on end together
+  [[nodiscard]] std::uint64_t skip(std::uint64_t frames) noexcept {
+    since_change_ += frames;
     if (!is_dense_) return frames;
-    return static_cast<std::uint64_t>(static_cast<double>(frames) / usually_apart_.mean());
+    unseen_ += static_cast<double>(frames) / usually_apart_.mean();
+    const auto keyframes = static_cast<std::uint64_t>(unseen_);
+    unseen_ -= static_cast<double>(keyframes);
+    return keyframes;
   }
 
   /// Whether it usually takes more than a frame for the scene to change.
@@ -146,7 +155,8 @@ class Keyframes {
   bool has_map_ = false;               // is matched with
   bool is_dense_ = false;
   std::uint64_t changes_ = 0;
-  std::uint64_t since_change_ = 0;                         // frames
+  std::uint64_t since_change_ = 0;  // frames
+  double unseen_ = 0.0;             // part of a keyframe that frames were which never came
   Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes

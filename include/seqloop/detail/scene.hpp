@@ -94,6 +94,7 @@ inline constexpr std::size_t sketches_of_in_step = 2;
 /// How far the places along a trace have changed as the frames did, from the one before to the
 /// newest: .54 if they are the same pictures, 0 if they have nothing to do with them, and less
 /// where they look like the frames but change in another way. Source: src/README.md, section 6.2.
+/// @param scene  whose mean is above 0
 /// @param frames both
 /// @param at     of the trace's row at the newest frame
 /// @param from   the trace's row at the frame before

@@ -54,7 +54,7 @@ class StopFrames {
     if (has_left && (at > end || at + nearly < end)) return {place, 0};
     constexpr double half = 0.5;
     const auto number = static_cast<std::uint64_t>(std::clamp(at, first, end) + half);
-    while (order.number(there) > number) --there;
+    while (there > rows->first && order.number(there) > number) --there;
     // Frames that never came may lie between two places at which it stood.
     return {order.number(there), std::min(number - order.number(there), map.stood(there))};
   }
