@@ -84,7 +84,7 @@ double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
   constexpr double soon = 100.0;
   constexpr double late = 200.0;
   if (!last_found_) return 0.0;
-  const auto since = static_cast<double>(frame - *last_found_);
+  const auto since = static_cast<double>(frame - last_found_->frame);
   return std::clamp((late - since) / (late - soon), 0.0, 1.0);
 }
 
@@ -93,17 +93,43 @@ double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * waiting.on.where(waiting.left);
 }
 
+/// Whether the robot may have driven out of an earlier drive where that ends, before a trace began
+/// that does not go on from where it was last found.
+bool PendingAnswers::may_be_beyond_the_end(
+    const PlaceMap& map, std::uint64_t newest,
+    std::span<const BeliefTraces::Step> trace) const noexcept {
+  constexpr std::size_t off = 5;  // rows that it may be further on
+  if (!last_found_ || last_found_->row == none) return false;
+  const std::size_t from = last_found_->row;
+  const CandidateRun session = map.order().around(from);
+  if (grows_ && session.first == map.order().newest_session().first) return false;
+  const std::uint64_t since = newest - last_found_->frame;
+  const auto back = static_cast<std::size_t>(std::min<std::uint64_t>(since, trace.size() - 1));
+  const std::size_t by = static_cast<std::size_t>(since) - back;
+  const std::size_t row = trace[back].row;
+  if (from + by + off < session.last) return false;
+  const bool goes_on = row + own >= from && row >= session.first && row < session.last;
+  return !goes_on && !map.same_place(from, row) &&
+         !map.same_place(std::min(from + by, session.last - 1), row);
+}
+
 /// How much more the log-odds of the newest frame's row have to be, since much looks alike. Where
 /// it is of this drive: many drives never come back to where they were; one that has will again,
 /// but most of its frames are of new places. Where it is another drive's, and the robot was not
-/// found lately: it may be where nobody has driven before.
-double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest) noexcept {
+/// found lately, or may have driven on beyond that drive's end: it may be where nobody has driven
+/// before.
+double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest,
+                                std::span<const BeliefTraces::Step> trace) noexcept {
   constexpr double of_a_first_loop = 2.2;
   constexpr double of_other_loops = 0.9;
   constexpr double of_other_drives = 0.5;
   const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
   if (of_this_drive) return last_found_ ? of_other_loops : of_a_first_loop;
-  return of_other_drives * (1.0 - found_lately(newest));
+  const double lately = found_lately(newest);
+  const double asked = of_other_drives * (1.0 - lately);
+  if (!may_be_beyond_the_end(map, newest, trace)) return asked;
+  // One that is carried about comes to other rows anyway.
+  return asked + of_a_first_loop * lately * (1.0 - std::min(1.0, 10.0 * jump_rate_.chance()));
 }
 
 std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, std::uint64_t newest,
@@ -118,7 +144,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   at(newest).likeliest = trace.front().row;
   ask_windows(map, newest, trace);
   const double best = belief.remember(log_odds(*evidence_));
-  evidence_->asked = asked_of(map, newest);
+  evidence_->asked = asked_of(map, newest, trace);
   const double right = trace_is_right(best - evidence_->asked);
   const double same_place = trace_is_right(best);
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
@@ -263,7 +289,9 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
     give(map, steps, waiting);
     if (answers_[given_ - 1].gate != Gate::match) continue;
-    if (frame >= oldest) last_found_ = std::max(frame, last_found_.value_or(0));
+    if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
+      last_found_ = Found{frame, waiting.row};
+    }
     if (grows_) continue;
     jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
   }
@@ -427,6 +455,7 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
 }
 
 void PendingAnswers::removed(std::size_t row, bool forgotten) noexcept {
+  if (last_found_) count_without(row, forgotten, last_found_->row);
   for (Waiting& waiting : waiting_) {
     count_without(row, forgotten, waiting.row);
     count_without(row, forgotten, waiting.likeliest);
@@ -438,6 +467,7 @@ void PendingAnswers::removed(std::size_t row, bool forgotten) noexcept {
 
 void PendingAnswers::inserted(std::size_t row) noexcept {
   jump_rate_.inserted(row);
+  if (last_found_) count_with(row, last_found_->row);
   for (Waiting& waiting : waiting_) {
     count_with(row, waiting.row);
     count_with(row, waiting.likeliest);

@@ -232,6 +232,31 @@ TEST_F(Accuracy, ARobotLocalisesInAReferenceOfLaps) {
 }
 
 /// The robot drives at half the pace that the reference was driven at.
+/// By night the way behind the map's end looks for fifty frames much like one within it by day.
+TEST_F(Accuracy, ARobotThatDrivesOutOfTheMapIsNotFoundElsewhereInIt) {
+  SEQLOOP_DATA_OR_SKIP(shared);
+  const std::filesystem::path drives = shared / "data/gardens_point";
+  describe_some(drives / "night_right", 0, 200, 1, "night");
+  for (const std::size_t places : {60U, 80U, 100U, 130U, 160U}) {
+    const std::string day = fmt::format("day{}", places);
+    describe_some(drives / "day_left", 0, places, 1, day);
+    const auto matched =
+        run(fmt::format("match --reference {}.npy --query night.npy --out m.csv", day));
+    ASSERT_EQ(matched.exit_code, 0) << matched.err;
+    std::istringstream rows(test::read_all(file("m.csv")));
+    std::size_t found = 0;
+    std::string row;
+    for (std::getline(rows, row); std::getline(rows, row);) {
+      if (!row.ends_with(",1")) continue;
+      const std::size_t query = std::stoul(row);
+      const std::size_t match = std::stoul(row.substr(row.find(',') + 1));
+      EXPECT_LE(std::max(query, match) - std::min(query, match), 10U) << day << ": " << row;
+      ++found;
+    }
+    EXPECT_GE(found, places * 9 / 10) << day;
+  }
+}
+
 TEST_F(Accuracy, ARobotLocalisesAtHalfThePace) {
   SEQLOOP_DATA_OR_SKIP(shared);
   describe_some(shared / "data/gardens_point/day_left", 0, 200, 2, "reference");

@@ -641,6 +641,11 @@ TEST_F(BadInput, FlagsThatDoNothing) {
       "--fleet-places 7",
       {"grow: there is no map", "save-every-s: there is no map", "thumbnails: there is no map",
        "fleet-places: there are no others"});
+  for (const std::string name : {"gar*", "gar?ge", "gar[a-d]ge"}) {
+    expect_refused(
+        "run --source good.npy --fleet '" + name + "'",
+        {"fleet: '" + name + "' would be a pattern", "what is told are places of a map"});
+  }
   expect_refused("run --source good.npy --overload-every 3",
                  {"overload-every: the newest frame is taken, not every n-th"});
   for (const std::string verb : {"run --reference good.npy --source good.npy ",

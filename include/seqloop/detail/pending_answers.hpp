@@ -113,6 +113,11 @@ class PendingAnswers {
   void inserted(std::size_t row) noexcept;
 
  private:
+  /// Where the robot was found.
+  struct Found {
+    std::uint64_t frame;
+    std::size_t row;  // `none`: it has gone
+  };
   /// How much better one line is than another.
   struct Lead {
     double here;
@@ -155,7 +160,11 @@ class PendingAnswers {
   [[nodiscard]] std::span<FoundLine> lines_in(std::size_t slot) noexcept {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
-  [[nodiscard]] double asked_of(const PlaceMap& map, std::uint64_t newest) noexcept;
+  [[nodiscard]] bool may_be_beyond_the_end(
+      const PlaceMap& map, std::uint64_t newest,
+      std::span<const BeliefTraces::Step> trace) const noexcept;
+  [[nodiscard]] double asked_of(const PlaceMap& map, std::uint64_t newest,
+                                std::span<const BeliefTraces::Step> trace) noexcept;
   [[nodiscard]] static double probability(const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_sure(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept;
@@ -192,7 +201,7 @@ class PendingAnswers {
   std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
   JumpRate jump_rate_;
-  std::optional<std::uint64_t> last_found_;  // frame of the newest answer that was accepted
+  std::optional<Found> last_found_;  // by the newest frame whose answer was accepted
   std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago
 };
 

@@ -54,6 +54,10 @@ void check(const FleetSettings& settings, bool map, bool enhance, Faults& faults
     faults.push_back({"fleet, enhance", "differences are enhanced by places that are still to come",
                       "leave one of them out"});
   }
+  if (settings.name.find_first_of("*?[") != std::string::npos) {
+    faults.push_back({"fleet", "'" + settings.name + "' would be a pattern for other fleets' names",
+                      "leave out * ? ["});
+  }
   check_name(faults, "robot", settings.robot);
   if (!(settings.kbps >= 0.0)) faults.push_back({"fleet-kbps", "it must be 0 (no limit) or more"});
   if (settings.places == 0 || settings.places > most_fleet_places) {
