@@ -52,28 +52,13 @@ std::optional<std::size_t> PlaceOrder::row_of_number(std::uint64_t number) const
 }
 
 std::size_t PlaceOrder::append(std::uint64_t frame, std::uint64_t number) noexcept {
-  const std::size_t slot = free_slot_;
-  slots_[at(size_)] = static_cast<std::uint32_t>(slot);
-  numbers_[slot] = number;
-  frames_[slot] = frame;
-  next_ = number + 1;
-  ++size_;
-  free_slot_ = size_;
-  return slot;
+  return insert(sessions_ - 1, frame, number);
 }
 
 std::size_t PlaceOrder::insert(std::size_t session, std::uint64_t frame,
                                std::uint64_t number) noexcept {
   const std::size_t row = this->session(session).last;
-  if (row == size_) {
-    // Sessions behind this one may have been begun, of which no row has come yet.
-    const std::uint64_t next = next_;
-    const std::size_t slot = append(frame, number);
-    count_from(next);
-    for (Begin& begin : begins_.first(sessions_).subspan(session + 1)) ++begin.row;
-    return slot;
-  }
-  straight_ = false;
+  straight_ = straight_ && row == size_;
   const std::size_t slot = free_slot_;
   if (row < size_ / 2) {
     begin_ = begin_ == 0 ? slots_.size() - 1 : begin_ - 1;
@@ -86,6 +71,8 @@ std::size_t PlaceOrder::insert(std::size_t session, std::uint64_t frame,
   frames_[slot] = frame;
   ++size_;
   free_slot_ = size_;
+  count_from(number + 1);
+  // Those behind this one may have been begun, and have no row yet.
   for (Begin& begin : begins_.first(sessions_).subspan(session + 1)) ++begin.row;
   return slot;
 }

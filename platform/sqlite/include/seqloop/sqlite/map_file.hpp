@@ -12,13 +12,15 @@
 #include <string>
 #include <vector>
 
+#include "seqloop/place_map.hpp"
+
 namespace seqloop::sqlite {
 
 /// Bytes of a place that can be saved.
 constexpr std::uint64_t most_place_bytes = std::uint64_t{1} << 26U;
 
 /// Numbers of places and of frames end below it.
-constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
+constexpr std::uint64_t number_end = PlaceMap::number_end;
 
 /// What all places of a map have in common: only such places can be compared.
 struct MapForm {
