@@ -105,11 +105,11 @@ class Exported {
       const std::uint64_t from =
           begin_of_places(file, part.records.size() * map.form().place_bytes);
       const std::string places = bytes_of(file);
+      // It may have become shorter.
+      const auto begin = static_cast<std::size_t>(std::min<std::uint64_t>(from, places.size()));
       map.save(id, {.frames = session.frames,
                     .records = part.records,
-                    .places = std::as_bytes(std::span(places))
-                                  .subspan(std::min<std::uint64_t>(
-                                      from, places.size())),  // it may have become shorter
+                    .places = std::as_bytes(std::span(places)).subspan(begin),
                     .links = part.links,
                     .thumbnails = part.thumbnails,
                     .statistics = session.statistics ? &*session.statistics : nullptr});
