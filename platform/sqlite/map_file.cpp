@@ -260,6 +260,22 @@ MapFile::MapFile(MapFile&&) noexcept = default;
 MapFile& MapFile::operator=(MapFile&&) noexcept = default;
 MapFile::~MapFile() = default;
 
+void MapFile::checkpoint() {
+  const State& map = *state_;
+  if (!map.writes) return;
+  map.check_place();
+  try {
+    state_->database.execute("PRAGMA wal_checkpoint(PASSIVE)");
+  } catch (const DatabaseError& error) {
+    const std::string name = map.path.string();
+    throw SaveError(to_string(
+        {name,
+         "what was saved last could not be moved out of " + name +
+             "-wal: " + fault_of(map.path, error).why,
+         "keep both files together; a run that saves in the map moves it, once there is room"}));
+  }
+}
+
 void MapFile::drop_if_unused() noexcept { state_->drops = true; }
 const fs::path& MapFile::path() const noexcept { return state_->path; }
 const MapForm& MapFile::form() const noexcept { return state_->form; }

@@ -399,6 +399,7 @@ Recovered recover(const fs::path& in, const fs::path& out) {
     }
     MapFile map = MapFile::open(out, remains->form);
     Recovered result = Copying(*remains, map).all();
+    map.checkpoint();
     if (unknown) result.lost.emplace_back("what described the places, and in which form they are");
     return result;
   } catch (const fs::filesystem_error& error) {

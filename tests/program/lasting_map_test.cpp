@@ -144,6 +144,30 @@ TEST_F(LastingMaps, WhereAllFramesAreSavedWhatIsMissingIsNamed) {
       << full.err;
 }
 
+TEST_F(LastingMaps, WhatTheFileHasNoRoomForStaysInTheLogAndIsTold) {
+  // The log of a drive of 40 frames is smaller than the file.
+  write("large.npy", oracle::drive(1, 600, 2'000, 0.2F));
+  write("small.npy", oracle::drive(1, 40, 2'000, 0.3F));
+  expect_done("match --query large.npy --map m.seqloop --out m.csv");
+  const auto kilobytes = std::filesystem::file_size(file("m.seqloop")) / 1024;
+  const test::Outcome full =
+      run("--version; trap '' XFSZ; ulimit -f " + std::to_string(kilobytes + 4) +
+          "; '" SEQLOOP_BINARY "' match --query small.npy --map m.seqloop --session 2 --out m.csv");
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.err.find("m.seqloop: what was saved last could not be moved out of "
+                          "m.seqloop-wal: "),
+            std::string::npos)
+      << full.err;
+  EXPECT_NE(full.err.find("40 frames are saved"), std::string::npos) << full.err;
+  EXPECT_TRUE(std::filesystem::exists(file("m.seqloop-wal")));
+  expect_done("map check m.seqloop");
+  expect_done("match --query small.npy --map m.seqloop --session 3 --out m.csv");
+  EXPECT_FALSE(std::filesystem::exists(file("m.seqloop-wal")));
+  const auto info = nlohmann::json::parse(run("map info m.seqloop --json").out);
+  ASSERT_EQ(info["sessions"].size(), 3U);
+  EXPECT_EQ(info["sessions"][1]["frames"], 40);
+}
+
 TEST_F(LastingMaps, OfSessionsThatWereSeenOftenEnoughVisitsStay) {
   std::string last;
   for (unsigned n = 0; n < 8; ++n) {

@@ -100,7 +100,7 @@ class Stepper {
       if (file != nullptr) unsaved = file->finish(*detector_, rest);
     }
     if (unsaved) {
-      set_os_error("not all of the drive is saved: " + *unsaved);
+      set_os_error(*unsaved);
       throw py::error_already_set();
     }
     return rest;

@@ -372,12 +372,17 @@ std::string Keeper::end() {
   std::uint64_t places = 0;
   const auto sessions = file_->sessions();
   for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
+  try {
+    file_->checkpoint();
+  } catch (const sqlite::SaveError& error) {
+    stays_in_log_ = error.what();
+  }
   return fmt::format("{} of {} {} kept", counted(places, "place"),
                      counted(sessions.size(), "session"), are(places));
 }
 
 std::string Keeper::unsaved() const {
-  if (failing_.empty()) return {};
+  if (failing_.empty()) return stays_in_log_;
   std::size_t places = first_ ? 1 : 0;
   for (const Session& session : sessions_) places += session.records.size();
   // While the disk is full, more may wait in DDS, which nobody has counted.

@@ -40,7 +40,7 @@ class Keeper {
 
   /// Saves the rest. @return what is kept, for a person
   [[nodiscard]] std::string end();
-  /// @return what the disk did not take, and why; empty: nothing waits
+  /// @return what the disk did not take, and why; empty: nothing waits, and the map is one file
   [[nodiscard]] std::string unsaved() const;
 
  private:
@@ -97,7 +97,8 @@ class Keeper {
   std::optional<First> first_;  // waits for room on the disk, and so does what comes after it
   std::size_t waiting_ = 0;     // places
   std::chrono::steady_clock::time_point saved_;
-  std::string failing_;  // why the disk takes nothing; empty: it does
+  std::string failing_;       // why the disk takes nothing; empty: it does
+  std::string stays_in_log_;  // why the map is no single file in the end; empty: it is
   bool refusing_ = false;
   std::vector<std::string> news_;
 };

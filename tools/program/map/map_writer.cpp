@@ -352,12 +352,18 @@ std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const
   ending_ = true;
   if (!save()) {
     const bool frames_are = saved() >= frames_.load(std::memory_order_relaxed);
-    return (frames_are ? "its frames are, and not all that was learnt of them (links, thumbnails, "
-                         "statistics); "
-                       : "") +
+    return "not all of the drive is saved: " +
+           std::string(frames_are ? "its frames are, and not all that was learnt of them (links, "
+                                    "thumbnails, statistics); "
+                                  : "") +
            why_;
   }
   if (novel_) retired_ = retire_superseded(*stored_, *map_, linked_, none);
+  try {
+    stored_->file().checkpoint();
+  } catch (const sqlite::SaveError& error) {
+    return error.what();
+  }
   return std::nullopt;
 }
 

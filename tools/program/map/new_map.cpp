@@ -73,6 +73,7 @@ sqlite::MapFile& NewMap::open(const sqlite::MapForm& form) {
 }
 
 void NewMap::commit() {
+  if (map_) map_->checkpoint();
   map_.reset();
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   if (::rename(partial_.c_str(), path_.c_str()) != 0) {

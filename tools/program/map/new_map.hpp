@@ -26,7 +26,7 @@ class NewMap {
   /// The map there. Throws SetupError.
   sqlite::MapFile& open(const sqlite::MapForm& form);
 
-  /// Closes the map, then under its own name. The last call. Throws IoError.
+  /// Closes the map, then under its own name. The last call. Throws IoError, SaveError.
   void commit();
 
  private:

@@ -145,6 +145,7 @@ void change(const MapSettings& settings) {
     if (settings.words[0] == "forget") map.forget(settings.words[2]);
     if (settings.words[0] == "compact") map.compact();
     left = content_of(map);
+    map.checkpoint();
   }
   say("{}: {} in {} bytes, {} before", file.string(), left, fs::file_size(file), before);
 }

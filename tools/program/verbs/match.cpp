@@ -140,7 +140,7 @@ void match(const MatchSettings& settings, Faults faults) {
         counted(query->rows, "frame"), matched.accepted(), settings.out.string());
   }
   if (lasting) say("{}: {}", settings.map.file.string(), lasting->summary());
-  if (unsaved) attempt.fail("not all of the drive is saved: " + *unsaved);
+  if (unsaved) attempt.fail(*unsaved);
   attempt.end();
 }
 

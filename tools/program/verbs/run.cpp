@@ -314,7 +314,7 @@ void run(const RunSettings& settings, Faults faults) {
     while (const auto news = setup.map->trouble()) say("{}", *news);
   }
   if (setup.map) say("{}: {}", settings.map.file.string(), setup.map->summary());
-  if (unsaved) attempt.fail("not all of the drive is saved: " + *unsaved);
+  if (unsaved) attempt.fail(*unsaved);
   if (given_up) {
     attempt.fail(fmt::format("{}: no frame for {:g} seconds: given up", settings.source.string(),
                              settings.give_up_s));

@@ -232,6 +232,11 @@ class MapFile {
   ///   that cannot follow each other; SaveError. All of it or nothing
   std::uint64_t add(const MapFile& from);
 
+  /// Moves what the log beside the file holds into the file, as far as nobody reads it just now.
+  /// The destructor does so, too, but nobody learns that it could not. Throws SaveError: disk full,
+  /// …: nothing is lost, but the log stays, and the file is no map without it.
+  void checkpoint();
+
   /// Packs what is left, and gives the rest back to the disk. Needs as much room again meanwhile.
   /// Throws SetupError: damaged; SaveError.
   void compact();
