@@ -503,6 +503,8 @@ bool Detector::become_place() noexcept {
 bool Detector::take_in(std::size_t session, const PlaceMap::Saved& place) noexcept {
   const std::optional<std::size_t> row = map_->add_saved_to(session, place);
   if (!row) return false;
+  belief_.taken_in(map_->capacity());
+  pending_.taken_in();
   if (*row + 1 == map_->size()) return true;
   ranges_.inserted(*row);
   proposals_.inserted(*row);

@@ -24,6 +24,10 @@ constexpr double small_map = 200.0;
 // just left it; so is one that is carried from place to place.
 constexpr double coming_at_first = 0.1;
 
+// A robot that nears the stretch which another one has just begun sees its first rows from afar,
+// and among few rows, all of that stretch, they stand out as if it were there.
+constexpr std::size_t least_taken_in = 100;
+
 // How unique a window's best line has to be, and the part of what comes onto the map that then
 // comes where the line leads: a place that no single frame shows well is born with too little
 // otherwise.
@@ -117,14 +121,15 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   sketches_ = 0;
   likeliest_.reset();
   prefetch(view);
-  const std::optional<Scene> scene = gauge_.look(view, sketches_);
+  std::optional<Scene> scene;
+  if (view.rows >= least_rows_) scene = gauge_.look(view, sketches_);
   if (!scene) {
     restart();
     return sketches_;
   }
   const bool earlier_drives = has_earlier_drives(view);
   if (earlier_drives) first_frames_.take(view, *scene);
-  const bool begins = weighed_++ < FirstFrames::most;
+  const bool begins = view.newest - view.oldest < FirstFrames::most;
   const double rarely = begins && earlier_drives ? coming_at_first : coming;
   const double comes = std::max(rarely, std::min(coming_at_first, jumps)) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
@@ -543,9 +548,12 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
   wrong_.inserted(row);
 }
 
+void PlaceBelief::taken_in(std::size_t capacity) noexcept {
+  least_rows_ = std::min(least_taken_in, capacity);
+}
+
 void PlaceBelief::restart() noexcept {
   count_ = 0;
-  weighed_ = 0;
   new_place_ = 1.0;
   likeliest_.reset();
   expected_.reset();

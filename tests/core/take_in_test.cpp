@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/matcher.hpp"
+#include "core/ways.hpp"
 
 namespace seqloop {
 namespace {
@@ -178,6 +179,64 @@ TEST(TakeIn, LoopsAreFoundWhileRowsMove) {
       EXPECT_GE(accepted, accepted_still - accepted_still / 20);
     }
   }
+}
+
+/// Views along a road, of what lies ahead: less and less of it with the distance.
+Vectors views_ahead(std::uint32_t seed, std::size_t frames, float noise, std::uint32_t visit) {
+  std::mt19937 places(seed);
+  std::mt19937 here(seed * 7919U + visit);
+  const auto random = [](std::mt19937& engine) {
+    return static_cast<float>(engine()) / 4294967296.0F - 0.5F;
+  };
+  Vectors road(frames, std::vector<float>(256));
+  std::vector<float> scene(256);
+  for (std::size_t frame = frames; frame-- > 0;) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      scene[i] = 0.96F * scene[i] + random(places);
+      road[frame][i] = scene[i] + noise * random(here);
+    }
+  }
+  return test::unit(road);
+}
+
+/// Two robots on one road, one behind the other.
+TEST(TakeIn, WhoNearsWhereAnotherHasBegunIsNotThereYet) {
+  constexpr std::size_t ahead = 60;
+  constexpr std::size_t later = 15;  // frames until the other knows of a place
+  std::size_t found = 0;
+  std::size_t possible = 0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    MatcherConfig config;
+    config.standardisation.on = false;
+    config.full_map = FullMap::forget_oldest;
+    const Vectors behind = views_ahead(seed, 400, 3.0F, 1);
+    Vectors before = views_ahead(seed, 400, 3.0F, 2);
+    before.erase(before.begin(), before.begin() + ahead);
+    const PlaceMap its = map_of(before, config);
+    std::vector<std::byte> bytes(its.rows().saved_size());
+    PlaceMap map(config, {before.size(), 256, 2});
+    Detector detector(config, map);
+    const auto hear = [&](std::span<const Answer> answers) {
+      for (const Answer& answer : answers) {
+        if (answer.gate != Gate::match) continue;
+        const double off =
+            static_cast<double>(answer.match->place + ahead) - static_cast<double>(answer.frame);
+        EXPECT_LE(std::abs(off), 10.0) << answer.frame;
+        ++found;
+      }
+    };
+    for (std::size_t frame = 0; frame < before.size(); ++frame) {
+      if (frame >= later) {
+        its.rows().save(frame - later, bytes);
+        ASSERT_TRUE(detector.take_in(0, {frame - later, frame - later, bytes}));
+      }
+      hear(detector.step(behind[frame]).answers);
+      possible += frame >= ahead;
+    }
+    hear(detector.finish());
+  }
+  EXPECT_GT(found, possible * 3 / 4);
 }
 
 TEST(TakeIn, OnlyWhatFollows) {
