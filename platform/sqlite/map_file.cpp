@@ -268,11 +268,11 @@ void MapFile::checkpoint() {
     state_->database.execute("PRAGMA wal_checkpoint(PASSIVE)");
   } catch (const DatabaseError& error) {
     const std::string name = map.path.string();
-    throw SaveError(to_string(
-        {name,
-         "what was saved last could not be moved out of " + name +
-             "-wal: " + fault_of(map.path, error).why,
-         "keep both files together; a run that saves in the map moves it, once there is room"}));
+    throw SaveError(
+        to_string({name,
+                   "what was saved last could not be moved out of " + name +
+                       "-wal: " + fault_of(map.path, error).why,
+                   "make room, and save in the map again; until then it is both files together"}));
   }
 }
 

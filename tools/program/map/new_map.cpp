@@ -73,7 +73,14 @@ sqlite::MapFile& NewMap::open(const sqlite::MapForm& form) {
 }
 
 void NewMap::commit() {
-  if (map_) map_->checkpoint();
+  if (map_) {
+    try {
+      map_->checkpoint();
+    } catch (const sqlite::SaveError&) {
+      throw files::IoError(path_.string(),
+                           "it is not made, since the disk does not take all of it");
+    }
+  }
   map_.reset();
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   if (::rename(partial_.c_str(), path_.c_str()) != 0) {

@@ -26,7 +26,7 @@ class NewMap {
   /// The map there. Throws SetupError.
   sqlite::MapFile& open(const sqlite::MapForm& form);
 
-  /// Closes the map, then under its own name. The last call. Throws IoError, SaveError.
+  /// Closes the map, then under its own name. The last call. Throws IoError.
   void commit();
 
  private:
