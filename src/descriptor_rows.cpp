@@ -219,8 +219,25 @@ void DescriptorRows::save(std::size_t row, std::span<std::byte> out) const noexc
   }
 }
 
+bool DescriptorRows::can_be_saved(Arithmetic arithmetic,
+                                  std::span<const std::byte> saved) noexcept {
+  constexpr std::uint32_t exponent = 0x7f800000;  // all ones where a float is not finite
+  switch (arithmetic) {
+    case Arithmetic::float32:
+      for (; saved.size() >= sizeof(float); saved = saved.subspan(sizeof(float))) {
+        if ((taken<std::uint32_t>(saved) & exponent) == exponent) return false;
+      }
+      return true;
+    case Arithmetic::int8:
+      return std::memchr(saved.data(), no_value, saved.size()) == nullptr;
+    case Arithmetic::sketch:
+      return true;
+  }
+  return false;
+}
+
 bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noexcept {
-  if (saved.size() != saved_size()) return false;
+  if (saved.size() != saved_size() || !can_be_saved(form_.arithmetic, saved)) return false;
   switch (form_.arithmetic) {
     case Arithmetic::float32: {
       const std::span<float> values = exact_.subspan(row * stride_, form_.size);
@@ -228,12 +245,11 @@ bool DescriptorRows::load(std::size_t row, std::span<const std::byte> saved) noe
         values[i] = std::bit_cast<float>(taken<std::uint32_t>(saved.subspan(i * sizeof(float))));
       }
       measure(row);
-      return all_finite(values);
+      return true;
     }
     case Arithmetic::int8: {
       const std::span<std::int8_t> bytes = small(row);
       std::memcpy(bytes.data(), saved.data(), saved.size());
-      if (std::memchr(saved.data(), no_value, saved.size()) != nullptr) return false;
       lengths_[row] = inverse_length(kernels_->dot(bytes.data(), bytes.data(), bytes.size()));
       return true;
     }

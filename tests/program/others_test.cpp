@@ -6,6 +6,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,6 +71,26 @@ TEST_F(OthersTest, NothingIsCountedTwice) {
   EXPECT_FALSE(hear(5, 0, &about_));
   EXPECT_EQ(others_.places(), 11U);
   EXPECT_TRUE(others_.news().empty());
+}
+
+TEST_F(OthersTest, WhatIsNoDescriptorIsNoPlace) {
+  EXPECT_EQ(hear(1000, 0, &about_), 0U);
+  const std::array<std::byte, 4> lowest{std::byte{1}, std::byte{0x80}, std::byte{2}, std::byte{3}};
+  EXPECT_FALSE(others_.hear({1000, 1, second, lowest, {}, {}}, &about_));
+  EXPECT_EQ(others_.news().at(0),
+            "robot 'b', session 'today': it sends values that are no numbers: no more of it is "
+            "taken in");
+  EXPECT_FALSE(hear(1000, 2));
+  const dds::FleetSession floats{"b", "today", "float euclidean raw", "gradients", 2, 8};
+  Others others({"a", "x", "float euclidean raw", "gradients", 2, 8}, {}, 100);
+  const auto hear_floats = [&](std::int64_t session, std::array<float, 2> values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    return others.hear({session, 0, 0, bytes, {}, {}}, &floats);
+  };
+  constexpr float most = std::numeric_limits<float>::max();
+  EXPECT_TRUE(hear_floats(1, {-most, std::numeric_limits<float>::denorm_min()}));
+  EXPECT_FALSE(hear_floats(2, {0.5F, std::numeric_limits<float>::quiet_NaN()}));
+  EXPECT_FALSE(hear_floats(3, {-std::numeric_limits<float>::infinity(), 0.5F}));
 }
 
 TEST_F(OthersTest, StatisticsAreThoseOfASessionThatIsHeard) {

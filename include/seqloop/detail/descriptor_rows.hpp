@@ -64,9 +64,14 @@ class DescriptorRows {
   /// @param out [saved_size()]. Work: a copy. Allocates: never.
   void save(std::size_t row, std::span<std::byte> out) const noexcept;
 
+  /// Whether a descriptor can have been saved like that: floats are finite, and of the whole
+  /// numbers none is the lowest. @param saved [saved_size()]. Work: D. Allocates: never.
+  [[nodiscard]] static bool can_be_saved(Arithmetic arithmetic,
+                                         std::span<const std::byte> saved) noexcept;
+
   /// Takes over a row that was saved, in the same form; its sketch is left to `sketch`.
   /// @param saved [saved_size()]
-  /// @return false when no descriptor is saved like that; then the row is undefined
+  /// @return false when no descriptor is saved like that; then the row is as it was
   /// Work: D. Allocates: never.
   [[nodiscard]] bool load(std::size_t row, std::span<const std::byte> saved) noexcept;
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "program/fleet/fleet_settings.hpp"
+#include "program/map/place_form.hpp"
 #include "program/process/say.hpp"
 
 namespace seqloop::program {
@@ -188,6 +189,8 @@ std::optional<std::string> Others::fault(const Session& session,
     return fmt::format("it says {} bytes a place, and sends {}", own_.place_bytes,
                        place.bytes.size());
   }
+  // A map that has such a place is one that nobody can load.
+  if (!can_be_place(own_.form, place.bytes)) return "it sends values that are no numbers";
   if (session.places == 0) return std::nullopt;
   if (place.time_ns < session.newest_ns) return "its time goes back";
   // Unsigned: from the least time to the greatest, too.

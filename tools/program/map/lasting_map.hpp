@@ -13,20 +13,13 @@
 
 #include "program/drives/small_picture.hpp"
 #include "program/map/map_settings.hpp"
+#include "program/map/place_form.hpp"
 #include "program/map/place_pictures.hpp"
 #include "program/map/verdict.hpp"
 #include "seqloop/detector.hpp"
 #include "seqloop/frame.hpp"
 
 namespace seqloop::program {
-
-/// What all places of a map have in common: only such places can be compared.
-struct PlaceForm {
-  std::string form;
-  std::string describer;
-  std::size_t descriptor_size = 0;
-  std::size_t place_bytes = 0;
-};
 
 /// By what a session's places were standardised.
 struct SessionStatistics {

@@ -11,29 +11,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "program/map/place_form.hpp"
 #include "program/process/interruption.hpp"
 #include "ros/wall_time.hpp"
 
 namespace seqloop::program {
 namespace {
-
-/// How places are kept, in words.
-std::string form_of(const MatcherConfig& config) {
-  std::string form;
-  switch (config.arithmetic) {
-    case Arithmetic::float32:
-      form = "float";
-      break;
-    case Arithmetic::int8:
-      form = "int8";
-      break;
-    case Arithmetic::sketch:
-      form = "sketch";
-      break;
-  }
-  form += config.difference == Difference::euclidean ? " euclidean" : " mean-absolute";
-  return form + (config.standardisation.on ? " standardised" : " raw");
-}
 
 constexpr const char* of_pictures =
     "`seqloop run --source PICTURES --map FILE` describes them as the map's were, and a .npy file "
