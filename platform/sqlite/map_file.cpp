@@ -261,18 +261,12 @@ MapFile& MapFile::operator=(MapFile&&) noexcept = default;
 MapFile::~MapFile() = default;
 
 void MapFile::checkpoint() {
-  const State& map = *state_;
-  if (!map.writes) return;
-  map.check_place();
+  if (!state_->writes) return;
+  state_->check_place();
   try {
     state_->database.execute("PRAGMA wal_checkpoint(PASSIVE)");
   } catch (const DatabaseError& error) {
-    const std::string name = map.path.string();
-    throw SaveError(
-        to_string({name,
-                   "what was saved last could not be moved out of " + name +
-                       "-wal: " + fault_of(map.path, error).why,
-                   "make room, and save in the map again; until then it is both files together"}));
+    throw SaveError(to_string(fault_of(state_->path, error)));
   }
 }
 

@@ -154,8 +154,8 @@ TEST_F(LastingMaps, WhatTheFileHasNoRoomForStaysInTheLogAndIsTold) {
       run("--version; trap '' XFSZ; ulimit -f " + std::to_string(kilobytes + 4) +
           "; '" SEQLOOP_BINARY "' match --query small.npy --map m.seqloop --session 2 --out m.csv");
   EXPECT_EQ(full.exit_code, 1);
-  EXPECT_NE(full.err.find("m.seqloop: what was saved last could not be moved out of "
-                          "m.seqloop-wal: "),
+  EXPECT_NE(full.err.find("m.seqloop-wal: has to stay beside the map, which is none "
+                          "without it: m.seqloop: "),
             std::string::npos)
       << full.err;
   EXPECT_NE(full.err.find("40 frames are saved"), std::string::npos) << full.err;

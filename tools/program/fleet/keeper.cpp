@@ -10,6 +10,7 @@
 
 #include "program/fleet/place_number.hpp"
 #include "program/fleet/round_time.hpp"
+#include "program/map/move_log.hpp"
 #include "program/process/json_text.hpp"
 #include "program/process/say.hpp"
 #include "seqloop/detail/counted.hpp"
@@ -372,11 +373,7 @@ std::string Keeper::end() {
   std::uint64_t places = 0;
   const auto sessions = file_->sessions();
   for (const sqlite::SessionFacts& facts : sessions) places += facts.places;
-  try {
-    file_->checkpoint();
-  } catch (const sqlite::SaveError& error) {
-    stays_in_log_ = error.what();
-  }
+  stays_in_log_ = move_log_into(*file_).value_or("");
   return fmt::format("{} of {} {} kept", counted(places, "place"),
                      counted(sessions.size(), "session"), are(places));
 }

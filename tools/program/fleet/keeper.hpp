@@ -40,7 +40,7 @@ class Keeper {
 
   /// Saves the rest. @return what is kept, for a person
   [[nodiscard]] std::string end();
-  /// @return what the disk did not take, and why; empty: nothing waits, and the map is one file
+  /// @return what the disk did not take, and why; empty: nothing waits
   [[nodiscard]] std::string unsaved() const;
 
  private:
@@ -98,7 +98,7 @@ class Keeper {
   std::size_t waiting_ = 0;     // places
   std::chrono::steady_clock::time_point saved_;
   std::string failing_;       // why the disk takes nothing; empty: it does
-  std::string stays_in_log_;  // why the map is no single file in the end; empty: it is
+  std::string stays_in_log_;  // why its log has to stay beside the map in the end; empty: it can go
   bool refusing_ = false;
   std::vector<std::string> news_;
 };

@@ -297,8 +297,7 @@ void import_map(const fs::path& folder, const fs::path& out) {
   }
   refuse(std::move(faults));
   try {
-    found.write(made->open(found.form()));
-    made->commit();
+    made->make([&] { found.write(made->open(found.form())); });
   } catch (const std::invalid_argument&) {
     throw SetupError(
         {folder.string(), "its places and links do not fit each other", give_an_export});

@@ -109,7 +109,8 @@ class LastingMap {
                     bool readable) noexcept = 0;
 
   /// The drive is over: saves the rest, however long that takes.
-  /// @return why something could not be saved; nothing when all is
+  /// @return what could not be saved, or that its log has to stay beside the map, and why; nothing
+  ///   where all is in the file
   [[nodiscard]] virtual std::optional<std::string> finish(Detector& detector,
                                                           std::span<const Answer> rest) = 0;
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "program/map/move_log.hpp"
 namespace seqloop::program {
 namespace {
 
@@ -359,12 +360,7 @@ std::optional<std::string> MapWriter::finish(Detector& detector, std::span<const
            why_;
   }
   if (novel_) retired_ = retire_superseded(*stored_, *map_, linked_, none);
-  try {
-    stored_->file().checkpoint();
-  } catch (const sqlite::SaveError& error) {
-    return error.what();
-  }
-  return std::nullopt;
+  return move_log_into(stored_->file());
 }
 
 void MapWriter::tell(std::string text) {

@@ -57,13 +57,14 @@ std::vector<std::uint64_t> merge_maps(const std::vector<fs::path>& maps, const f
   refuse(std::move(faults));
   sqlite::MapFile* map = nullptr;
   std::vector<std::uint64_t> added;
-  for (const fs::path& path : maps) {
-    between();
-    const sqlite::MapFile from = sqlite::MapFile::read_only(path);
-    if (map == nullptr) map = &made->open(from.form());
-    added.push_back(map->add(from));
-  }
-  made->commit();
+  made->make([&] {
+    for (const fs::path& path : maps) {
+      between();
+      const sqlite::MapFile from = sqlite::MapFile::read_only(path);
+      if (map == nullptr) map = &made->open(from.form());
+      added.push_back(map->add(from));
+    }
+  });
   return added;
 }
 

@@ -72,14 +72,17 @@ sqlite::MapFile& NewMap::open(const sqlite::MapForm& form) {
   return map_.emplace(sqlite::MapFile::open(partial_, form));
 }
 
-void NewMap::commit() {
-  if (map_) {
-    try {
-      map_->checkpoint();
-    } catch (const sqlite::SaveError&) {
-      throw files::IoError(path_.string(),
-                           "it is not made, since the disk does not take all of it");
+void NewMap::make(const std::function<void()>& fill) {
+  try {
+    fill();
+    if (map_) map_->checkpoint();
+  } catch (const sqlite::SaveError& error) {
+    std::string text = error.what();
+    const std::string name = partial_.string();
+    for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos;) {
+      text.replace(at, name.size(), path_.string());
     }
+    throw sqlite::SaveError(text);
   }
   map_.reset();
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "seqloop/sqlite/map_file.hpp"
@@ -9,7 +10,7 @@
 namespace seqloop::program {
 
 /// A map that appears under its name only when it is complete. Until then it is
-/// `.NAME.partial-PID` in the same folder; the destructor removes that if there was no commit.
+/// `.NAME.partial-PID` in the same folder; the destructor removes that if it was not made.
 class NewMap {
  public:
   /// Throws SetupError: there is such a file already, the folder is missing or may not be written.
@@ -26,8 +27,9 @@ class NewMap {
   /// The map there. Throws SetupError.
   sqlite::MapFile& open(const sqlite::MapForm& form);
 
-  /// Closes the map, then under its own name. The last call. Throws IoError.
-  void commit();
+  /// Runs what fills the map, and closes it; then it is there under its own name. The last call.
+  /// Throws what `fill` throws; SaveError, by the map's own name; IoError.
+  void make(const std::function<void()>& fill);
 
  private:
   std::filesystem::path path_;

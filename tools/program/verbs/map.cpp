@@ -8,6 +8,7 @@
 
 #include "program/map/exchange.hpp"
 #include "program/map/merge.hpp"
+#include "program/map/move_log.hpp"
 #include "program/map/new_map.hpp"
 #include "program/process/interruption.hpp"
 #include "program/process/json_text.hpp"
@@ -111,8 +112,8 @@ void check(const MapSettings& settings) {
 
 void recover(const MapSettings& settings) {
   NewMap out(settings.words[2]);
-  const sqlite::Recovered found = sqlite::recover(settings.words[1], out.partial());
-  out.commit();
+  sqlite::Recovered found;
+  out.make([&] { found = sqlite::recover(settings.words[1], out.partial()); });
   for (const std::string& lost : found.lost) say("{}: lost: {}", settings.words[1], lost);
   say("{}: {} in {}, {}, {}", settings.words[2], counted(found.places, "place"),
       counted(found.sessions, "session"), counted(found.links, "link"),
@@ -145,7 +146,7 @@ void change(const MapSettings& settings) {
     if (settings.words[0] == "forget") map.forget(settings.words[2]);
     if (settings.words[0] == "compact") map.compact();
     left = content_of(map);
-    map.checkpoint();
+    if (const auto stays = move_log_into(map)) throw std::runtime_error(*stays);
   }
   say("{}: {} in {} bytes, {} before", file.string(), left, fs::file_size(file), before);
 }
