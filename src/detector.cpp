@@ -504,7 +504,6 @@ bool Detector::take_in(std::size_t session, const PlaceMap::Saved& place) noexce
   const std::optional<std::size_t> row = map_->add_saved_to(session, place);
   if (!row) return false;
   belief_.taken_in(map_->capacity());
-  pending_.taken_in();
   if (*row + 1 == map_->size()) return true;
   ranges_.inserted(*row);
   proposals_.inserted(*row);

@@ -117,7 +117,7 @@ bool PendingAnswers::may_be_beyond_the_end(
 /// it is of this drive: many drives never come back to where they were; one that has will again,
 /// but most of its frames are of new places. Where it is another drive's, and the robot was not
 /// found lately, or may have driven on beyond that drive's end: it may be where nobody has driven
-/// before. Where others drive meanwhile, nobody knows whether their roads meet.
+/// before.
 double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest,
                                 std::span<const BeliefTraces::Step> trace) noexcept {
   constexpr double of_a_first_loop = 2.2;
@@ -126,8 +126,7 @@ double PendingAnswers::asked_of(const PlaceMap& map, std::uint64_t newest,
   const bool of_this_drive = grows_ && at(newest).likeliest >= map.order().newest_session().first;
   if (of_this_drive) return last_found_ ? of_other_loops : of_a_first_loop;
   const double lately = found_lately(newest);
-  const double of_others = takes_in_ && !last_found_ ? of_a_first_loop : of_other_drives;
-  const double asked = of_others * (1.0 - lately);
+  const double asked = of_other_drives * (1.0 - lately);
   if (!may_be_beyond_the_end(map, newest, trace)) return asked;
   // One that is carried about comes to other rows anyway.
   return asked + of_a_first_loop * lately * (1.0 - std::min(1.0, 10.0 * jump_rate_.chance()));

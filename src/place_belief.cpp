@@ -121,15 +121,18 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   sketches_ = 0;
   likeliest_.reset();
   prefetch(view);
-  std::optional<Scene> scene;
-  if (view.rows >= least_rows_) scene = gauge_.look(view, sketches_);
+  const std::optional<Scene> scene = gauge_.look(view, sketches_);
   if (!scene) {
     restart();
     return sketches_;
   }
   const bool earlier_drives = has_earlier_drives(view);
   if (earlier_drives) first_frames_.take(view, *scene);
-  const bool begins = view.newest - view.oldest < FirstFrames::most;
+  const bool begins = weighed_++ < FirstFrames::most;
+  if (count_ == 0 && view.rows < least_rows_) {
+    wrong_.take({});
+    return sketches_;
+  }
   const double rarely = begins && earlier_drives ? coming_at_first : coming;
   const double comes = std::max(rarely, std::min(coming_at_first, jumps)) *
                        std::min(1.0, static_cast<double>(view.rows) / small_map);
@@ -549,11 +552,12 @@ void PlaceBelief::inserted(std::size_t row) noexcept {
 }
 
 void PlaceBelief::taken_in(std::size_t capacity) noexcept {
-  least_rows_ = std::min(least_taken_in, capacity);
+  if (localises_) least_rows_ = std::min(least_taken_in, capacity);
 }
 
 void PlaceBelief::restart() noexcept {
   count_ = 0;
+  weighed_ = 0;
   new_place_ = 1.0;
   likeliest_.reset();
   expected_.reset();

@@ -480,29 +480,6 @@ TEST(PlaceBelief, AsksForMoreInAMapWhereTheRobotWasNotFoundLately) {
   EXPECT_EQ(detector.evidence()->asked, 0.5);
 }
 
-/// Of rows that others add meanwhile as much as of a first loop: their roads may never meet.
-TEST(PlaceBelief, AsksMuchOfAFirstLoopWithOthersThatDriveMeanwhile) {
-  const MatcherConfig config = settings(Use::localise);
-  const oracle::Vectors theirs = way(1, 400, 0.5F, 1);
-  PlaceMap map(config, {401, theirs.front().size()});
-  for (const auto& descriptor : theirs) ASSERT_TRUE(map.add(descriptor));
-  std::vector<std::byte> saved(map.rows().saved_size());
-  map.rows().save(399, saved);
-  Detector detector(config, map);
-  const oracle::Vectors same = way(1, 400, 0.5F, 2);
-  take(detector, std::span(same).first(5));
-  EXPECT_EQ(detector.evidence()->asked, 0.5);
-  ASSERT_TRUE(detector.take_in(0, {400, 400, saved}));
-  take(detector, std::span(same).subspan(5, 1));
-  EXPECT_EQ(detector.evidence()->asked, 2.2);
-  const std::size_t steps = steps_until_found(detector, std::span(same).subspan(6), 0);
-  ASSERT_LT(steps, 100U);
-  take(detector, std::span(same).subspan(6 + steps, 1));
-  EXPECT_EQ(detector.evidence()->asked, 0.0);
-  take(detector, way(2, 350, 0.5F, 1));
-  EXPECT_EQ(detector.evidence()->asked, 0.5) << "their roads do meet";
-}
-
 /// A row that no single frame shows well is found sooner where the window's best line leads: by a
 /// robot that was found lately, for any map has a best line.
 TEST(PlaceBelief, IsBornWhereTheBestLineLeadsIfItWasFoundLately) {

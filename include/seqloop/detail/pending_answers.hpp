@@ -109,10 +109,6 @@ class PendingAnswers {
   /// @param forgotten as `PlaceMap::Taken` has it
   void removed(std::size_t row, bool forgotten) noexcept;
 
-  /// Another robot has saved a place meanwhile: from now on a first loop with earlier drives is
-  /// asked for as much as one with the drive itself.
-  void taken_in() noexcept { takes_in_ = true; }
-
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept;
 
@@ -204,7 +200,6 @@ class PendingAnswers {
   std::span<BeliefTraces::Step> trace_;  // [PlaceBelief::depth]
   std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
-  bool takes_in_ = false;
   JumpRate jump_rate_;
   std::optional<Found> last_found_;  // by the newest frame whose answer was accepted
   std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago

@@ -64,8 +64,9 @@ class PlaceBelief {
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept;
 
-  /// Another robot has saved a place meanwhile: from now on nothing is believed of fewer than 100
-  /// rows. @param capacity of the map, where that is less
+  /// Another robot has saved a place meanwhile. Where this one localises, no belief comes from now
+  /// on into a map of fewer than 100 rows; what has come stays. @param capacity of the map, where
+  /// that is less
   void taken_in(std::size_t capacity) noexcept;
 
   /// Nothing is known of where the robot is; what was learnt of the drive stays.
@@ -160,7 +161,8 @@ class PlaceBelief {
 
   bool localises_;
   std::size_t sketches_ = 0;
-  std::size_t least_rows_ = 0;  // below which nothing is believed
+  std::size_t weighed_ = 0;     // frames since nothing was known
+  std::size_t least_rows_ = 0;  // below which no belief comes
   double new_place_ = 1.0;
   WrongRows wrong_;  // what the best wrong rows gain
   std::size_t count_ = 0;
