@@ -26,6 +26,9 @@ constexpr std::size_t own = 6;
 // was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
 
+// Doubt that right rows have now and then.
+constexpr double little_doubt = 0.5;
+
 /// That a trace is right whose best log-odds, of all frames that were looked back from, are these:
 /// the best of many are higher than those of one, wrong traces' most of all. Source: src/README.md,
 /// section 6.6.
@@ -63,8 +66,8 @@ bool PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   forget_evidence();
-  at(frame) = {frame,      true,       readable, false, false, 0, 0.0, 0.0,
-               {0.0, 0.0}, {0.0, 0.0}, 0,        1.0,   none,  0, {}};
+  at(frame) = {frame,      true, readable, false, false, 0,     0.0, 0.0, {0.0, 0.0},
+               {0.0, 0.0}, 0,    1.0,      none,  0.0,   false, 0,   {}};
   end_ = frame + 1;
 }
 
@@ -150,6 +153,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   for (std::uint64_t frame = std::max(first_, oldest); frame <= newest; ++frame) {
     at(frame).left = true;
   }
+  keep_in_doubt(newest);
   const std::uint64_t first = newest - (trace.size() - 1);
   const Waiting& before = at(first);
   const bool known = before.frame == first && before.believed && before.lag > 0 &&
@@ -214,6 +218,26 @@ void PendingAnswers::ask_steps(std::span<BeliefTraces::Step> trace) const noexce
   }
 }
 
+/// A trace that closes loops tells no end, but the doubt about the row that it leads on to does.
+/// Once that has risen by so much, the robot may have left since: those frames are in doubt, until
+/// hardly anything speaks against a trace that comes through them.
+void PendingAnswers::keep_in_doubt(std::uint64_t newest) noexcept {
+  constexpr double much = 5.0;
+  constexpr double risen = 3.0;
+  const double doubt = evidence_->doubt;
+  at(newest).doubt = doubt;
+  if (!grows_ || doubt <= much) return;
+  double lowest = doubt;
+  std::uint64_t first = newest + 1;
+  for (; first > first_ && at(first - 1).frame == first - 1; --first) {
+    const double then = at(first - 1).doubt;
+    if (then < little_doubt || then > lowest + risen) break;  // it has fallen since
+    lowest = std::min(lowest, then);
+  }
+  if (doubt - lowest <= risen) return;
+  for (std::uint64_t frame = first; frame <= newest; ++frame) at(frame).doubted = true;
+}
+
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
                                const LookedBack& back) noexcept {
@@ -237,6 +261,7 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
   waiting.row = row;
   waiting.left = false;
   waiting.believed = true;
+  if (evidence_->doubt < little_doubt) waiting.doubted = false;
 }
 
 /// How much better the best line through a frame's row is than the best one elsewhere.
@@ -349,6 +374,7 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   constexpr double hardly_sure = 0.7;
   if (grows_ && waiting.on.still < surely_on) return std::min(is_there, hardly_sure);
   if (is_there <= most_in_doubt) return is_there;
+  if (waiting.doubted) return most_in_doubt;
   if (is_beside_a_jump(map, waiting)) return most_in_doubt;
   const double if_carried = waiting.right * waiting.carried.where(waiting.left);
   if (if_carried < is_there && is_borne_out(map, waiting)) return is_there;

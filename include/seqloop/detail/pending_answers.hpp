@@ -138,6 +138,8 @@ class PendingAnswers {
     std::uint64_t lag;      // frames that had come after it when it was looked back on last
     double new_place;       // belief in none, as it came
     std::size_t likeliest;  // row, as it came; `none` where there was none
+    double doubt;           // whether the robot was still there, as it came
+    bool doubted;           // it has risen too much since
     std::size_t lines;      // found
     Lead lead;              // that `margin` took the logarithm of last
   };
@@ -176,6 +178,7 @@ class PendingAnswers {
   void ask_belief(const PlaceMap& map, std::uint64_t newest,
                   std::span<BeliefTraces::Step> trace) noexcept;
   void ask_steps(std::span<BeliefTraces::Step> trace) const noexcept;
+  void keep_in_doubt(std::uint64_t newest) noexcept;
   void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
