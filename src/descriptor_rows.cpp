@@ -221,11 +221,10 @@ void DescriptorRows::save(std::size_t row, std::span<std::byte> out) const noexc
 
 bool DescriptorRows::can_be_saved(Arithmetic arithmetic,
                                   std::span<const std::byte> saved) noexcept {
-  constexpr std::uint32_t exponent = 0x7f800000;  // all ones where a float is not finite
   switch (arithmetic) {
     case Arithmetic::float32:
       for (; saved.size() >= sizeof(float); saved = saved.subspan(sizeof(float))) {
-        if ((taken<std::uint32_t>(saved) & exponent) == exponent) return false;
+        if (!std::isfinite(std::bit_cast<float>(taken<std::uint32_t>(saved)))) return false;
       }
       return true;
     case Arithmetic::int8:

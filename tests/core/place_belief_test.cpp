@@ -148,6 +148,23 @@ TEST(PlaceBelief, InventsNothingWhereNoPlaceComesTwice) {
   }
 }
 
+/// 400 frames, 100 of them again, and then another road.
+/// @param old part of its first view that is still that along the old one, less over 100 frames
+oracle::Vectors leaving(std::uint32_t seed, float noise, float old) {
+  const oracle::Vectors again = way(seed, 350, noise, 2);
+  const oracle::Vectors other = way(seed + 50, 150, noise, 1);
+  oracle::Vectors drive = way(seed, 400, noise, 1);
+  drive.insert(drive.end(), again.begin() + 100, again.begin() + 200);
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    const float part = old * std::max(0.0F, 1.0F - static_cast<float>(i) / 100.0F);
+    drive.push_back(other[i]);
+    for (std::size_t d = 0; d < size; ++d) {
+      drive.back()[d] += part * (again[200 + i][d] - other[i][d]);
+    }
+  }
+  return unit(drive);
+}
+
 /// A revisit, and then another road, whose view is at first a little of that along the old one.
 TEST(PlaceBelief, AnswersARevisitToItsEndAndNotMuchFurther) {
   constexpr float noise = 4.0F;
@@ -158,19 +175,8 @@ TEST(PlaceBelief, AnswersARevisitToItsEndAndNotMuchFurther) {
   std::size_t behind = 0;  // later than 20 frames after it
   std::size_t doubted = 0;
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-    const oracle::Vectors again = way(seed, 350, noise, 2);
-    const oracle::Vectors other = way(seed + 50, 150, noise, 1);
-    oracle::Vectors drive = way(seed, 400, noise, 1);
-    drive.insert(drive.end(), again.begin() + 100, again.begin() + 200);
-    for (std::size_t i = 0; i < other.size(); ++i) {
-      const float old = 0.3F * std::max(0.0F, 1.0F - static_cast<float>(i) / 100.0F);
-      drive.push_back(other[i]);
-      for (std::size_t d = 0; d < size; ++d) {
-        drive.back()[d] += old * (again[200 + i][d] - other[i][d]);
-      }
-    }
     for (const Answer& answer :
-         drive_through({}, unit(drive), settings(Use::close_loops)).answers) {
+         drive_through({}, leaving(seed, noise, 0.3F), settings(Use::close_loops)).answers) {
       // Frames at its ends that hardly lie on the trace are as likely right as wrong.
       if (answer.probability > 0.45F && answer.probability < 0.99F) {
         ++doubted;
@@ -235,12 +241,8 @@ TEST(PlaceBelief, IsNotOnARoadThatItHasLeftAtOnce) {
   std::size_t on = 0;
   std::size_t behind = 0;
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-    const oracle::Vectors again = way(seed, 350, noise, 2);
-    const oracle::Vectors other = way(seed + 50, 150, noise, 1);
-    oracle::Vectors drive = way(seed, 400, noise, 1);
-    drive.insert(drive.end(), again.begin() + 100, again.begin() + 200);
-    drive.insert(drive.end(), other.begin(), other.end());
-    for (const Answer& answer : drive_through({}, drive, settings(Use::close_loops)).answers) {
+    for (const Answer& answer :
+         drive_through({}, leaving(seed, noise, 0.0F), settings(Use::close_loops)).answers) {
       if (answer.gate != Gate::match) continue;
       ++(answer.frame < leaves ? on : behind);
     }

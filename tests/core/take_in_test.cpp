@@ -182,21 +182,10 @@ TEST(TakeIn, LoopsAreFoundWhileRowsMove) {
 }
 
 /// Views along a road, of what lies ahead: less and less of it with the distance.
-Vectors views_ahead(std::uint32_t seed, std::size_t frames, float noise, std::uint32_t visit) {
-  std::mt19937 places(seed);
-  std::mt19937 here(seed * 7919U + visit);
-  const auto random = [](std::mt19937& engine) {
-    return static_cast<float>(engine()) / 4294967296.0F - 0.5F;
-  };
-  Vectors road(frames, std::vector<float>(256));
-  std::vector<float> scene(256);
-  for (std::size_t frame = frames; frame-- > 0;) {
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-      scene[i] = 0.96F * scene[i] + random(places);
-      road[frame][i] = scene[i] + noise * random(here);
-    }
-  }
-  return test::unit(road);
+Vectors views_ahead(std::uint32_t seed, std::uint32_t visit) {
+  Vectors road = test::way(seed, 400, 3.0F, visit, 256, 0.96F);
+  std::ranges::reverse(road);
+  return road;
 }
 
 /// Two robots on one road, one behind the other.
@@ -210,8 +199,8 @@ TEST(TakeIn, WhoNearsWhereAnotherHasBegunIsNotThereYet) {
     MatcherConfig config;
     config.standardisation.on = false;
     config.full_map = FullMap::forget_oldest;
-    const Vectors behind = views_ahead(seed, 400, 3.0F, 1);
-    Vectors before = views_ahead(seed, 400, 3.0F, 2);
+    const Vectors behind = views_ahead(seed, 1);
+    Vectors before = views_ahead(seed, 2);
     before.erase(before.begin(), before.begin() + ahead);
     const PlaceMap its = map_of(before, config);
     std::vector<std::byte> bytes(its.rows().saved_size());

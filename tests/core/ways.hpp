@@ -22,9 +22,9 @@ inline oracle::Vectors unit(oracle::Vectors drive) {
 
 /// A way through places: neighbours share most of what they look like. Two visits of one way differ
 /// by noise.
-/// @param size values in a descriptor
+/// @param size values in a descriptor   @param kept of what a place looks like, in the next one
 inline oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, std::uint32_t visit,
-                           std::size_t size = 256) {
+                           std::size_t size = 256, float kept = 0.8F) {
   std::mt19937 places(seed);
   std::mt19937 here(seed * 7919U + visit);
   const auto random = [](std::mt19937& engine) {
@@ -34,7 +34,7 @@ inline oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, 
   std::vector<float> scene(size);
   for (auto& descriptor : drive) {
     for (std::size_t i = 0; i < size; ++i) {
-      scene[i] = 0.8F * scene[i] + random(places);
+      scene[i] = kept * scene[i] + random(places);
       descriptor[i] = scene[i] + noise * random(here);
     }
   }

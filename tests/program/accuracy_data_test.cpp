@@ -231,7 +231,6 @@ TEST_F(Accuracy, ARobotLocalisesInAReferenceOfLaps) {
   EXPECT_EQ(answered, accepted);
 }
 
-/// The robot drives at half the pace that the reference was driven at.
 /// By night the way behind the map's end looks for fifty frames much like one within it by day.
 TEST_F(Accuracy, ARobotThatDrivesOutOfTheMapIsNotFoundElsewhereInIt) {
   SEQLOOP_DATA_OR_SKIP(shared);
@@ -257,6 +256,7 @@ TEST_F(Accuracy, ARobotThatDrivesOutOfTheMapIsNotFoundElsewhereInIt) {
   }
 }
 
+/// The robot drives at half the pace that the reference was driven at.
 TEST_F(Accuracy, ARobotLocalisesAtHalfThePace) {
   SEQLOOP_DATA_OR_SKIP(shared);
   describe_some(shared / "data/gardens_point/day_left", 0, 200, 2, "reference");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "program/map/move_log.hpp"
+
 namespace seqloop::program {
 namespace {
 
