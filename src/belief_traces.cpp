@@ -33,7 +33,8 @@ std::size_t BeliefTraces::trace(std::size_t index, std::span<Step> out) const no
                    .gain = static_cast<double>(step.gain),
                    .novelty = static_cast<double>(novelties_[frame]),
                    .change = static_cast<double>(changes_[frame]),
-                   .in_step = static_cast<double>(step.in_step)};
+                   .in_step = static_cast<double>(step.in_step),
+                   .shown = step.shown};
     at = parents_[frame * width_ + at];
     frame = before(frame);
   }

@@ -183,17 +183,25 @@ FrameReport Detector::report_again() noexcept {
   return report;
 }
 
-/// Answers a frame as its step was. Of a robot that was carried away and stands, no more is seen
-/// than that one frame, and all would be wrong together: so it is waited for what is seen later.
-/// Where it has been carried away before, it may be so again from there: what is seen then tells
-/// nothing of where it stood.
+/// Whether a stop may be elsewhere than what was believed before it. Of a robot that was carried
+/// away and stands, no more is seen than one frame, and all would be wrong together: so that frame
+/// must show its place by itself, or it is waited for what is seen later. Where the robot has been
+/// carried away before, it may be so again from there: what is seen then tells nothing of where it
+/// stood.
+/// @param step some frames of which, more than one, show the same behind a cut
+bool Detector::may_be_elsewhere(std::uint64_t step) const noexcept {
+  const bool carried = pending_.jumps() > 0.0;
+  const bool too_early = queries_.newest() - step < config_.sequence_length;
+  if (too_early) return carried || !pending_.shows_its_place(step);
+  return carried && steps_.is_isolated(step);
+}
+
+/// Answers a frame as its step was.
 void Detector::tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept {
   Answer& told = told_[told_count_++];
   told = answer;
   told.frame = frame;
-  const bool too_early = queries_.newest() - answer.frame < config_.sequence_length;
-  const bool carried_on = pending_.jumps() > 0.0 && steps_.is_isolated(answer.frame);
-  if (!settled && steps_.repeats(answer.frame) && (too_early || carried_on)) {
+  if (!settled && steps_.repeats(answer.frame) && may_be_elsewhere(answer.frame)) {
     told.probability = std::min(told.probability, in_doubt);
   }
   if (!told.match) return;

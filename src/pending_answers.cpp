@@ -66,8 +66,8 @@ bool PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   forget_evidence();
-  at(frame) = {frame,      true, readable, false, false, 0,     0.0, 0.0, {0.0, 0.0},
-               {0.0, 0.0}, 0,    1.0,      none,  0.0,   false, 0,   {}};
+  at(frame) = {frame,      true, readable, false, false, 0,     0.0,   0.0, {0.0, 0.0},
+               {0.0, 0.0}, 0,    1.0,      none,  0.0,   false, false, 0,   {}};
   end_ = frame + 1;
 }
 
@@ -177,7 +177,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
     if (!frame.waits || frame.frame != newest - back) continue;
     look_back(map.order(), frame,
               {trace[back].row, right, same_place, on[back],
-               carried.empty() ? on[back] : carried[back], back});
+               carried.empty() ? on[back] : carried[back], back, trace[back].shown});
   }
   return sketches;
 }
@@ -241,7 +241,7 @@ void PendingAnswers::keep_in_doubt(std::uint64_t newest) noexcept {
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
                                const LookedBack& back) noexcept {
-  const auto& [row, right, same_place, on, carried, lag] = back;
+  const auto& [row, right, same_place, on, carried, lag, shown] = back;
   const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
@@ -259,6 +259,7 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
   waiting.carried = carried;
   waiting.lag = lag;
   waiting.row = row;
+  waiting.shown = shown;
   waiting.left = false;
   waiting.believed = true;
   if (evidence_->doubt < little_doubt) waiting.doubted = false;
@@ -312,13 +313,14 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
     if (!waiting.waits || waiting.frame != frame) continue;
     const bool late = frame < oldest || newest - steps.frame_of(frame) >= patience_;
     if (!late && !is_sure(map, waiting) && waiting.readable) continue;
-    give(map, steps, waiting);
+    const std::uint64_t began = frame < oldest ? oldest_before_ : oldest;
+    give(map, steps, waiting, may_be_new(map, began));
     if (answers_[given_ - 1].gate != Gate::match) continue;
     if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
       last_found_ = Found{frame, waiting.row};
     }
     if (grows_) continue;
-    jump_rate_.take(map, frame, waiting.row, frame < oldest ? oldest_before_ : oldest);
+    jump_rate_.take(map, frame, waiting.row, began);
   }
   // Frames from before a gap have all been answered now.
   oldest_before_ = oldest;
@@ -381,19 +383,30 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
   return std::clamp(if_carried, most_in_doubt, is_there);
 }
 
-void PendingAnswers::give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting) noexcept {
+/// Whether enough has been seen to say that a place is new. A robot that is switched on may be on
+/// the map: before a window is whole nothing has been found, whether it is or not.
+/// @param began the first frame that belongs together with those that are answered
+bool PendingAnswers::may_be_new(const PlaceMap& map, std::uint64_t began) const noexcept {
+  const bool has_earlier_drives =
+      !grows_ || map.order().newest_session().first >= SceneGauge::least_rows;
+  return !has_earlier_drives || end_ - began > trajectories_->window();
+}
+
+void PendingAnswers::give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting,
+                          bool may_be_new) noexcept {
   waiting.waits = false;
   Answer& answer = answers_[given_++];
   answer = {waiting.frame, Gate::frame_error, 0.0F, std::nullopt};
   if (!waiting.readable) return;
-  answer.gate = Gate::new_place;
+  const Gate otherwise = may_be_new ? Gate::new_place : Gate::unsure;
+  answer.gate = otherwise;
   if (!waiting.believed) return;
   answer.probability = static_cast<float>(calibrated(told(map, waiting)));
   answer.match = match(map, waiting.frame);
   const bool sure = accepts(answer.probability);
   constexpr double half = 0.5;
   const bool is_new = waiting.new_place > half && static_cast<double>(answer.probability) < half;
-  answer.gate = sure ? Gate::match : is_new ? Gate::new_place : Gate::unsure;
+  answer.gate = sure ? Gate::match : is_new ? otherwise : Gate::unsure;
   if (grows_) link(map, steps, waiting);
 }
 

@@ -352,6 +352,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     frames.way = squared_way(queries.rows(), newest, before, sketches_);
   }
   std::array<double, most> gains;
+  std::array<double, most> shown;
   const double w = scene.novelty;
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -360,6 +361,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     const RowGain gain = gain_of(scene, *view.map, view.rows, frames, at.row, sketches_);
     const double l = gain.gain;
     gains[i] = l;
+    shown[i] = gain.without_bounds;
     at.told = w * l;
     at.step = unknown;
     // Where all rows that were scanned show what the frame does, no change tells them apart.
@@ -379,9 +381,27 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
   new_place_ /= sum;
+  mark_what_is_shown(*view.map, std::span(shown).first(count_));
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
-    traces_.set(i, rows_[i].row, rows_[i].parent, rows_[i].told, rows_[i].step);
+    const Hypothesis& at = rows_[i];
+    traces_.set(i, at.row, at.parent, at.told, at.step, at.shown);
+  }
+}
+
+/// A frame by itself shows a row if it is much likelier there than somewhere new, and no less
+/// likely than at any other place.
+void PlaceBelief::mark_what_is_shown(const PlaceMap& map, std::span<const double> gains) noexcept {
+  constexpr double much = 3.0;
+  if (gains.empty()) return;
+  const std::size_t place =
+      rows_[static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin())].row;
+  double elsewhere = much;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    if (!map.same_place(rows_[i].row, place)) elsewhere = std::max(elsewhere, gains[i]);
+  }
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    rows_[i].shown = gains[i] >= elsewhere && map.same_place(rows_[i].row, place);
   }
 }
 
@@ -473,7 +493,7 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   at.past = top.past;
   at.age = std::max(at.age, top.age);
   const auto index = static_cast<std::size_t>(&at - rows_.data());
-  traces_.set(index, at.row, top.parent, at.told, at.step);
+  traces_.set(index, at.row, top.parent, at.told, at.step, at.shown);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the
@@ -526,7 +546,7 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
       if (order.apart(row, row + rows) != rows) continue;
       rows_[count_] = rows_[i];
       rows_[count_].row = row + rows;
-      traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0, unknown);
+      traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0, unknown, false);
     }
   }
 }

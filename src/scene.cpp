@@ -131,8 +131,8 @@ RowGain gain_of(const Scene& scene, const PlaceMap& map, std::size_t rows, const
     }
     contrast = (around / weight - here) / scene.deviation;
   }
-  const double z = scene.likeness(here);
-  return {std::min(std::max(z + 0.7 * contrast - scene.bias, -1.5), 3.0), contrast, here, before};
+  const double gain = scene.likeness(here) + 0.7 * contrast - scene.bias;
+  return {std::min(std::max(gain, -1.5), 3.0), gain, contrast, here, before};
 }
 
 double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames, const RowGain& at,

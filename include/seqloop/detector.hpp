@@ -165,6 +165,7 @@ class Detector {
   };
   [[nodiscard]] Taken take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] FrameReport report_again() noexcept;
+  [[nodiscard]] bool may_be_elsewhere(std::uint64_t step) const noexcept;
   void tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept;
   void tell(FrameReport& report, std::span<const Answer> answers) noexcept;
   void stand() noexcept;

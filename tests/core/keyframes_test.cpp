@@ -449,6 +449,50 @@ TEST(Keyframes, LetNoRobotThatWasCarriedAwayAndStandsBelieveItsLastPlace) {
   }
 }
 
+// Where each frame shows something else, any stop is behind a cut. What it shows is told apart from
+// what a robot sees that was carried away with the first frame of its stop.
+TEST(Keyframes, LetARobotStandWhereEachFrameIsNew) {
+  constexpr float nothing_kept = 0.0F;
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 400;
+  const Vectors known = test::way(1, 300, 0.3F, 1, 256, nothing_kept);
+  const Vectors seen = test::way(1, 300, 0.3F, 2, 256, nothing_kept);
+  const std::vector<float> elsewhere = test::way(9, 1, 0.3F, 1, 256, nothing_kept).front();
+  for (const bool carried : {false, true}) {
+    Vectors drive(seen.begin(), seen.begin() + at);
+    for (std::size_t i = 0; i < stop; ++i) drive.push_back(carried ? elsewhere : seen[at]);
+    MatcherConfig config;
+    PlaceMap map = map_of(known, config);
+    const auto answers = answers_of(drive, config, map);
+    for (std::uint64_t frame = at; frame < drive.size(); ++frame) {
+      const Answer& answer = answers.at(frame);
+      ASSERT_EQ(answer.gate == Gate::match, !carried) << frame;
+      if (!carried) {
+        EXPECT_EQ(answer.match->place, at) << frame;
+      }
+    }
+  }
+}
+
+// Of one frame nobody can tell whether the map has its place. Without a map it is new.
+TEST(Keyframes, LetNoRobotThatIsSwitchedOnWhereItStandsBeNew) {
+  const Vectors seen = test::way(1, 300, 0.3F, 2);
+  constexpr std::size_t stop = 300;
+  const Vectors drive = with_stop(seen, 0, stop);
+  for (const bool has_map : {true, false}) {
+    MatcherConfig config;
+    if (!has_map) config.use = Use::close_loops;
+    PlaceMap map = has_map ? map_of(test::way(1, 300, 0.3F, 1), config)
+                           : PlaceMap(config, {drive.size(), drive.front().size()});
+    const auto answers = answers_of(drive, config, map);
+    const std::uint64_t early = stop - config.patience - 1;
+    for (std::uint64_t frame = 0; frame < early; ++frame) {
+      ASSERT_EQ(answers.at(frame).gate, has_map ? Gate::unsure : Gate::new_place) << frame;
+    }
+    EXPECT_EQ(answers.at(stop + 100).gate, has_map ? Gate::match : Gate::new_place);
+  }
+}
+
 // Where drive and map both stood, the frames of the stop go by one for one.
 TEST(Keyframes, TellWhichFrameOfAStopItWas) {
   constexpr std::size_t at = 150;

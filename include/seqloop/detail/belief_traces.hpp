@@ -35,6 +35,7 @@ class BeliefTraces {
     bool elsewhere = false;  ///< whether the belief of its time was elsewhere
     /// As `in_step` has it; NaN: nothing is known.
     double in_step = std::numeric_limits<double>::quiet_NaN();
+    bool shown = false;  ///< whether the frame by itself shows the row
   };
 
   /// Begins the next frame; `set` fills it in.
@@ -42,11 +43,12 @@ class BeliefTraces {
 
   /// A hypothesis of the newest frame.
   /// @param parent its index at the frame before, or none
-  /// @param gain, in_step as `Step` has them
-  void set(std::size_t index, std::size_t row, Index parent, double gain, double in_step) noexcept {
+  /// @param gain, in_step, shown as `Step` has them
+  void set(std::size_t index, std::size_t row, Index parent, double gain, double in_step,
+           bool shown) noexcept {
     parents_[newest_ * width_ + index] = parent;
     steps_[newest_ * width_ + index] = {static_cast<std::uint32_t>(row), static_cast<float>(gain),
-                                        static_cast<float>(in_step)};
+                                        static_cast<float>(in_step), shown};
   }
 
   /// The row that a hypothesis of the newest frame was at so many frames before; none if it was
@@ -72,6 +74,7 @@ class BeliefTraces {
     std::uint32_t row;
     float gain;
     float in_step;
+    bool shown;
   };
 
   [[nodiscard]] std::size_t before(std::size_t frame) const noexcept {

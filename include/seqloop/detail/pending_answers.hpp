@@ -96,6 +96,13 @@ class PendingAnswers {
   void answer(PlaceMap& map, const FrameSteps& steps, std::uint64_t newest,
               std::uint64_t oldest) noexcept;
 
+  /// Whether a frame by itself shows the place where it is believed to have been taken, and no
+  /// other place as well; false where nothing is known.
+  [[nodiscard]] bool shows_its_place(std::uint64_t frame) const noexcept {
+    const Waiting& waiting = waiting_[slot_of(frame)];
+    return waiting.frame == frame && waiting.shown;
+  }
+
   /// Takes an answer that did not wait.
   void say(const Answer& answer) noexcept { answers_[given_++] = answer; }
 
@@ -140,6 +147,7 @@ class PendingAnswers {
     std::size_t likeliest;  // row, as it came; `none` where there was none
     double doubt;           // whether the robot was still there, as it came
     bool doubted;           // it has risen too much since
+    bool shown;             // whether it by itself shows the row
     std::size_t lines;      // found
     Lead lead;              // that `margin` took the logarithm of last
   };
@@ -152,6 +160,7 @@ class PendingAnswers {
     TraceSpan::On on;       // that the frame lies on it
     TraceSpan::On carried;  // as `Waiting` has it
     std::uint64_t lag;      // frames that have come since
+    bool shown;             // as `Waiting` has it
   };
 
   /// A power of two, so that nothing is divided: a step asks for this many hundred times.
@@ -184,7 +193,8 @@ class PendingAnswers {
                                                    std::uint64_t frame) noexcept;
   [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
   [[nodiscard]] Match match(const PlaceMap& map, std::uint64_t frame) noexcept;
-  void give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting) noexcept;
+  [[nodiscard]] bool may_be_new(const PlaceMap& map, std::uint64_t began) const noexcept;
+  void give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting, bool may_be_new) noexcept;
   void link(PlaceMap& map, const FrameSteps& steps, Waiting waiting) noexcept;
 
   const Trajectories* trajectories_;

@@ -119,6 +119,7 @@ class PlaceBelief {
     double contrast = 0.0;  // decaying mean
     double step = 0.0;      // the newest `in_step`; NaN: nothing is known
     double in_step = 0.0;   // decaying mean of those that are known
+    bool shown = false;     // whether the newest frame by itself shows the row
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
@@ -154,6 +155,7 @@ class PlaceBelief {
   [[nodiscard]] std::optional<std::size_t> came_from(const PlaceOrder& order,
                                                      const Hypothesis& at) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
+  void mark_what_is_shown(const PlaceMap& map, std::span<const double> gains) noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;

@@ -72,7 +72,8 @@ struct FramePair {
 
 /// What a frame says for a row of the map.
 struct RowGain {
-  double gain;      ///< by novelty, ln of how much likelier the frame is there, -1.5 .. 3
+  double gain;            ///< by novelty, ln of how much likelier the frame is there, -1.5 .. 3
+  double without_bounds;  ///< the same as it was before it was bounded
   double contrast;  ///< how much more alike than the frames and rows that lie a little off; 0 where
                     ///< there is no such frame
   double here;      ///< share of bits in which the newest frame differs from the row
