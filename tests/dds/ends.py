@@ -14,6 +14,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -114,6 +115,19 @@ def short(seqloop: str, street_program: str, fast_end: pathlib.Path, work: pathl
     sessions(seqloop, places, pictures[:80], fast_end, work / "sessions")
     begun_again(seqloop, pictures, fast_end, work / "again")
     broken(seqloop, fast_end, work / "broken")
+    unheard(seqloop, work / "unheard")
+
+
+def unheard(seqloop: str, work: pathlib.Path) -> None:
+    """What was there stays where a run is interrupted before its first frame."""
+    work.mkdir()
+    (work / "lines.jsonl").write_text("old")
+    run = Run(seqloop, work)
+    run.process.send_signal(signal.SIGINT)
+    code = run.process.wait()
+    expect(code == 1 and "interrupted: nothing has been written" in run.said.read_text()
+           and sorted(file.name for file in work.iterdir()) == ["lines.jsonl", "said"]
+           and (work / "lines.jsonl").read_text() == "old", "nothing came, and nothing was written")
 
 
 def broken(seqloop: str, fast_end: pathlib.Path, work: pathlib.Path) -> None:

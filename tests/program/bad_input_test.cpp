@@ -253,6 +253,10 @@ TEST_F(BadInput, ConfigurationFiles) {
   folder_.write("c.toml", "budget-total = 30\n[budget]\ntotal = 40\n");
   expect_refused("run --source good.npy --config c.toml",
                  {"c.toml:3", "'budget.total'", "'budget-total'", "c.toml:1"});
+  // What is a flag of another verb is none as a table.
+  folder_.write("c.toml", "[run]\nds = 40\n[source]\nds = 4\n");
+  expect_refused("run --source good.npy --config c.toml",
+                 {"c.toml:2", "'run-ds' is no known key", "c.toml:4", "'source-ds'"});
   folder_.write("c.toml", "ds = [1\n");
   expect_match_refused(match, {"c.toml:", "not TOML"});
   folder_.write("c.toml", "ds = 2.5\nstandardise = 3\npaper = \"yes\"\nmethod = 1\n");

@@ -112,6 +112,9 @@ TEST_F(MapVerb, CheckNamesWhatIsDamagedAndRecoverLeavesItOut) {
   EXPECT_EQ(pictures.err.find("links\n"), std::string::npos) << "all of them are there";
   folder_.write("text", std::string(20'000, 'x'));
   expect_refused("recover text c", "nothing of a map is whole in it");
+  fs::resize_file(file("b"), 20'000);
+  expect_refused("recover b c", "b: no place of it is whole");
+  EXPECT_FALSE(exists("c"));
 }
 
 TEST_F(MapVerb, MergePutsMapsBehindEachOther) {

@@ -10,7 +10,9 @@ namespace seqloop::program {
 Faults apply_config_text(std::string_view text, const std::string& name, const OptionTable& table,
                          const std::set<std::string>& given,
                          const std::vector<std::string>& known) {
+  // A table may have a flag's name, as `[run]` has, but is none.
   OtherKeys others;
+  others.tables = false;
   for (const std::string& key : known) {
     if (table.find(key) == nullptr) others.ignored.push_back(key);
   }

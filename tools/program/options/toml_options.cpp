@@ -103,8 +103,10 @@ class Reader {
                       [](const auto& a, const auto& b) { return earlier(a.first, b.first); });
     for (const auto& [node, key] : in_order) {
       const std::string name = prefix + key;
-      if (std::ranges::find(others_.ignored, name) != others_.ignored.end()) continue;
-      if (const toml::table* inner = node->as_table()) {
+      const toml::table* inner = node->as_table();
+      const bool ignorable = inner == nullptr || others_.tables;
+      if (ignorable && std::ranges::find(others_.ignored, name) != others_.ignored.end()) continue;
+      if (inner != nullptr) {
         read(*inner, name + "-", tables + key + ".");
       } else {
         take(name, tables + key, *node);

@@ -23,6 +23,7 @@ struct WrittenOption {
 struct OtherKeys {
   std::vector<std::string> ignored;  ///< somebody else reads them, or nobody
   bool lists = false;                ///< an option may have a list of values
+  bool tables = true;                ///< what is ignored may be a table, whatever is in it
 };
 
 /// `FILE:LINE` of a node.

@@ -113,7 +113,13 @@ void check(const MapSettings& settings) {
 void recover(const MapSettings& settings) {
   NewMap out(settings.words[2]);
   sqlite::Recovered found;
-  out.make([&] { found = sqlite::recover(settings.words[1], out.partial()); });
+  out.make([&] {
+    found = sqlite::recover(settings.words[1], out.partial());
+    if (found.places == 0 && !found.lost.empty()) {
+      throw SetupError(
+          {settings.words[1], "no place of it is whole", "take a copy, if there is one"});
+    }
+  });
   for (const std::string& lost : found.lost) say("{}: lost: {}", settings.words[1], lost);
   say("{}: {} in {}, {}, {}", settings.words[2], counted(found.places, "place"),
       counted(found.sessions, "session"), counted(found.links, "link"),

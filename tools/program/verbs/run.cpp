@@ -248,6 +248,7 @@ void run(const RunSettings& settings, Faults faults) {
     }
     progress.step();
   }
+  if (summary.frames() == 0) stop_before_the_first_frame(setup.map.get());
   const ThreadCost cost = since(warm);
   progress.done();
   const std::span<const Answer> rest = detector.finish();
