@@ -352,7 +352,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     frames.way = squared_way(queries.rows(), newest, before, sketches_);
   }
   std::array<double, most> gains;
-  std::array<double, most> shown;
+  std::array<double, most> without_bounds;
   const double w = scene.novelty;
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -361,7 +361,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     const RowGain gain = gain_of(scene, *view.map, view.rows, frames, at.row, sketches_);
     const double l = gain.gain;
     gains[i] = l;
-    shown[i] = gain.without_bounds;
+    without_bounds[i] = gain.without_bounds;
     at.told = w * l;
     at.step = unknown;
     // Where all rows that were scanned show what the frame does, no change tells them apart.
@@ -381,7 +381,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
   new_place_ /= sum;
-  mark_what_is_shown(*view.map, std::span(shown).first(count_));
+  mark_what_is_shown(*view.map, std::span(without_bounds).first(count_));
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
     const Hypothesis& at = rows_[i];
@@ -390,12 +390,12 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
 }
 
 /// A frame by itself shows a row if it is much likelier there than somewhere new, and no less
-/// likely than at any other place.
+/// likely than at any other place. @param gains of the hypotheses, without bounds
 void PlaceBelief::mark_what_is_shown(const PlaceMap& map, std::span<const double> gains) noexcept {
   constexpr double much = 3.0;
-  if (gains.empty()) return;
-  const std::size_t place =
-      rows_[static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin())].row;
+  const auto top = std::ranges::max_element(gains);
+  if (top == gains.end()) return;
+  const std::size_t place = rows_[static_cast<std::size_t>(top - gains.begin())].row;
   double elsewhere = much;
   for (std::size_t i = 0; i < gains.size(); ++i) {
     if (!map.same_place(rows_[i].row, place)) elsewhere = std::max(elsewhere, gains[i]);

@@ -119,10 +119,10 @@ class PlaceBelief {
     double contrast = 0.0;  // decaying mean
     double step = 0.0;      // the newest `in_step`; NaN: nothing is known
     double in_step = 0.0;   // decaying mean of those that are known
-    bool shown = false;     // whether the newest frame by itself shows the row
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
+    bool shown = false;     // whether the newest frame by itself shows the row
     BeliefTraces::Index parent = BeliefTraces::none;
   };
 
