@@ -387,9 +387,8 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
 /// the map: before a window is whole nothing has been found, whether it is or not.
 /// @param began the first frame that belongs together with those that are answered
 bool PendingAnswers::may_be_new(const PlaceMap& map, std::uint64_t began) const noexcept {
-  const bool has_earlier_drives =
-      !grows_ || map.order().newest_session().first >= SceneGauge::least_rows;
-  return !has_earlier_drives || end_ - began > trajectories_->window();
+  return !PlaceBelief::has_earlier_drives(!grows_, map.order()) ||
+         end_ - began > trajectories_->window();
 }
 
 void PendingAnswers::give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting,

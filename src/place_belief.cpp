@@ -126,7 +126,7 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
     restart();
     return sketches_;
   }
-  const bool earlier_drives = has_earlier_drives(view);
+  const bool earlier_drives = has_earlier_drives(localises_, view.map->order());
   if (earlier_drives) first_frames_.take(view, *scene);
   const bool begins = weighed_++ < FirstFrames::most;
   if (count_ == 0 && view.rows < least_rows_) {
@@ -154,13 +154,6 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   weigh(view, *scene);
   judge(view, *scene, jumps);
   return sketches_;
-}
-
-/// Whether the map holds other drives than the one that is being driven, and enough of them to be
-/// believed.
-bool PlaceBelief::has_earlier_drives(const SceneView& view) const noexcept {
-  const PlaceOrder& order = view.map->order();
-  return localises_ || order.newest_session().first >= SceneGauge::least_rows;
 }
 
 /// Has the processor fetch what weighing the rows found will read and their finding has not.
@@ -381,28 +374,29 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
   for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
   new_place_ /= sum;
-  mark_what_is_shown(*view.map, std::span(without_bounds).first(count_));
+  const Shown shown = shown_best(*view.map, std::span(without_bounds).first(count_));
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
     const Hypothesis& at = rows_[i];
-    traces_.set(i, at.row, at.parent, at.told, at.step, at.shown);
+    const bool is_shown =
+        without_bounds[i] >= shown.least && view.map->same_place(at.row, shown.row);
+    traces_.set(i, at.row, at.parent, at.told, at.step, is_shown);
   }
 }
 
 /// A frame by itself shows a row if it is much likelier there than somewhere new, and no less
 /// likely than at any other place. @param gains of the hypotheses, without bounds
-void PlaceBelief::mark_what_is_shown(const PlaceMap& map, std::span<const double> gains) noexcept {
+PlaceBelief::Shown PlaceBelief::shown_best(const PlaceMap& map,
+                                           std::span<const double> gains) const noexcept {
   constexpr double much = 3.0;
+  Shown best{0, much};
   const auto top = std::ranges::max_element(gains);
-  if (top == gains.end()) return;
-  const std::size_t place = rows_[static_cast<std::size_t>(top - gains.begin())].row;
-  double elsewhere = much;
+  if (top == gains.end()) return best;
+  best.row = rows_[static_cast<std::size_t>(top - gains.begin())].row;
   for (std::size_t i = 0; i < gains.size(); ++i) {
-    if (!map.same_place(rows_[i].row, place)) elsewhere = std::max(elsewhere, gains[i]);
+    if (!map.same_place(rows_[i].row, best.row)) best.least = std::max(best.least, gains[i]);
   }
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    rows_[i].shown = gains[i] >= elsewhere && map.same_place(rows_[i].row, place);
-  }
+  return best;
 }
 
 /// Where the scene hardly changes, rows side by side cannot be told apart by single frames; their
@@ -493,7 +487,7 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   at.past = top.past;
   at.age = std::max(at.age, top.age);
   const auto index = static_cast<std::size_t>(&at - rows_.data());
-  traces_.set(index, at.row, top.parent, at.told, at.step, at.shown);
+  traces_.set_parent(index, top.parent);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the

@@ -46,9 +46,14 @@ class BeliefTraces {
   /// @param gain, in_step, shown as `Step` has them
   void set(std::size_t index, std::size_t row, Index parent, double gain, double in_step,
            bool shown) noexcept {
-    parents_[newest_ * width_ + index] = parent;
+    set_parent(index, parent);
     steps_[newest_ * width_ + index] = {static_cast<std::uint32_t>(row), static_cast<float>(gain),
                                         static_cast<float>(in_step), shown};
+  }
+
+  /// A hypothesis of the newest frame came from another one. @param parent as above
+  void set_parent(std::size_t index, Index parent) noexcept {
+    parents_[newest_ * width_ + index] = parent;
   }
 
   /// The row that a hypothesis of the newest frame was at so many frames before; none if it was

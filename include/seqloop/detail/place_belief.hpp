@@ -72,6 +72,12 @@ class PlaceBelief {
   /// Nothing is known of where the robot is; what was learnt of the drive stays.
   void restart() noexcept;
 
+  /// Whether a map holds other drives than the one that is being driven, and enough of them to be
+  /// believed.
+  [[nodiscard]] static bool has_earlier_drives(bool localises, const PlaceOrder& order) noexcept {
+    return localises || order.newest_session().first >= SceneGauge::least_rows;
+  }
+
   /// A row of the newest frame and what speaks for it.
   struct Likeliest {
     std::size_t row;
@@ -122,7 +128,6 @@ class PlaceBelief {
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
-    bool shown = false;     // whether the newest frame by itself shows the row
     BeliefTraces::Index parent = BeliefTraces::none;
   };
 
@@ -134,6 +139,12 @@ class PlaceBelief {
     BeliefTraces::Index parent;
   };
 
+  /// What a frame by itself shows best.
+  struct Shown {
+    std::size_t row;
+    double least;  // gain without bounds of rows of its place that the frame by itself shows
+  };
+
   /// What has gone beyond the rows of its session.
   struct Ended {
     double mass = 0.0;
@@ -141,7 +152,6 @@ class PlaceBelief {
     std::size_t from = 0;  // this one
   };
 
-  [[nodiscard]] bool has_earlier_drives(const SceneView& view) const noexcept;
   static void prefetch(const SceneView& view) noexcept;
   [[nodiscard]] bool goes_at_its_pace(const Hypothesis& at, double jumps) const noexcept;
   [[nodiscard]] double pace_after(const Hypothesis& at, double by) const noexcept;
@@ -155,7 +165,7 @@ class PlaceBelief {
   [[nodiscard]] std::optional<std::size_t> came_from(const PlaceOrder& order,
                                                      const Hypothesis& at) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
-  void mark_what_is_shown(const PlaceMap& map, std::span<const double> gains) noexcept;
+  [[nodiscard]] Shown shown_best(const PlaceMap& map, std::span<const double> gains) const noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
