@@ -243,9 +243,11 @@ TEST_F(Live, OfAnInterruptedReportNothingStays) {
   folder_.write("stop.sh",
                 "mkfifo run && { n=0; while n=$((n+1)); tail -n +11 r.jsonl | sed "
                 "'s/\"newest\":/&'$n'/'; do :; done >run 2>/dev/null & }\n"
+                "writer=$!\n"
                 "env --default-signal=INT \"$@\" 2>stderr.txt &\n"
                 "until ls -d .p.html.partial-* >/dev/null 2>&1; do sleep 0.01; done\n"
-                "kill -INT $!; wait $!\n");
+                "kill -INT $!; wait $!; code=$?\n"
+                "kill $writer 2>/dev/null; exit $code\n");
   const std::string command = "cd '" + folder_.path().string() +
                               "' && sh stop.sh '" SEQLOOP_BINARY "' report run --out p.html";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
