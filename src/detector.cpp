@@ -331,7 +331,7 @@ std::span<const Answer> Detector::finish() noexcept {
   restart();
   // Frames that do not come before the next one are none of what has ended.
   skipped_ = config_.sequence_length + 1;
-  pending_.forget_jumps();
+  pending_.forget_drive();
   return report.answers;
 }
 

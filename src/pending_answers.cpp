@@ -26,6 +26,9 @@ constexpr std::size_t own = 6;
 // was on is known less well than that both are right.
 constexpr std::uint64_t frames_at_a_meeting = 2;
 
+// The margin that windows on a trace usually have.
+constexpr double usual_margin = 0.04;
+
 // Doubt that right rows have now and then.
 constexpr double little_doubt = 0.5;
 
@@ -34,6 +37,14 @@ constexpr double little_doubt = 0.5;
 /// section 6.6.
 double trace_is_right(double best) {
   return logistic(std::min(1.5 * best - 0.6, 2.75 * best - 5.05));
+}
+
+/// What a frame's window says beyond what is usual of windows on a trace.
+void ask_windows(std::span<BeliefTraces::Step> trace, double usual) {
+  constexpr double weight = 16.0;
+  for (BeliefTraces::Step& step : trace) {
+    if (!std::isnan(step.margin)) step.besides += weight * step.novelty * (step.margin - usual);
+  }
 }
 
 }  // namespace
@@ -66,8 +77,8 @@ bool PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
   forget_evidence();
-  at(frame) = {frame,      true, readable, false, false, 0,     0.0,   0.0, {0.0, 0.0},
-               {0.0, 0.0}, 0,    1.0,      none,  0.0,   false, false, 0,   {}};
+  at(frame) = {frame, true, readable, false, false, 0,     0.0, 0.0, {0.0, 0.0}, {0.0, 0.0},
+               0,     1.0,  none,     0.0,   false, false, 0.0, 0.0, 0,          {}};
   end_ = frame + 1;
 }
 
@@ -145,7 +156,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   std::size_t sketches = 0;
   const auto trace = trace_.first(belief.follow_back(map, trace_, born, newest, sketches));
   at(newest).likeliest = trace.front().row;
-  ask_windows(map, newest, trace);
+  look_at_windows(map, newest, trace);
   const double best = belief.remember(log_odds(*evidence_));
   evidence_->asked = asked_of(map, newest, trace);
   const double right = trace_is_right(best - evidence_->asked);
@@ -162,9 +173,14 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const std::size_t frames = std::min(trace.size(), waiting);
   const double usual = belief.usual_gain();
   const double novelty = belief.usual_novelty();
+  // Where a robot that was never carried away is surer than it has to be, no more is asked of a
+  // frame than those show that were accepted.
+  constexpr double much = 5.0;
+  const bool sure = best - evidence_->asked >= much && jumps() <= 0.0;
   ask_belief(map, newest, trace);
+  ask_windows(trace, sure ? accepted_.least_margin(usual_margin) : usual_margin);
   ask_steps(trace);
-  span_.ask(trace, usual);
+  span_.ask(trace, sure ? accepted_.least_gain(usual) : usual);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
@@ -175,9 +191,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   for (std::size_t back = 0; back < frames; ++back) {
     Waiting& frame = at(newest - back);
     if (!frame.waits || frame.frame != newest - back) continue;
-    look_back(map.order(), frame,
-              {trace[back].row, right, same_place, on[back],
-               carried.empty() ? on[back] : carried[back], back, trace[back].shown});
+    look_back(map.order(), frame, trace[back],
+              {right, same_place, on[back], carried.empty() ? on[back] : carried[back], back});
   }
   return sketches;
 }
@@ -214,7 +229,7 @@ void PendingAnswers::ask_steps(std::span<BeliefTraces::Step> trace) const noexce
   if (novelty <= 0.0) return;
   const double usual = std::min(most, share * sum / novelty);
   for (BeliefTraces::Step& step : trace) {
-    if (!std::isnan(step.in_step)) step.gain += weight * step.novelty * (step.in_step - usual);
+    if (!std::isnan(step.in_step)) step.besides += weight * step.novelty * (step.in_step - usual);
   }
 }
 
@@ -240,9 +255,9 @@ void PendingAnswers::keep_in_doubt(std::uint64_t newest) noexcept {
 
 /// Takes in that a trace has come through a frame.
 void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
-                               const LookedBack& back) noexcept {
-  const auto& [row, right, same_place, on, carried, lag, shown] = back;
-  const bool same = waiting.believed && order.apart(waiting.row, row) <= own;
+                               const BeliefTraces::Step& step, const LookedBack& back) noexcept {
+  const auto& [right, same_place, on, carried, lag] = back;
+  const bool same = waiting.believed && order.apart(waiting.row, step.row) <= own;
   if (waiting.believed && !same) {
     // One of the two is wrong.
     const double now = right * on.still;
@@ -258,8 +273,10 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
   waiting.on = on;
   waiting.carried = carried;
   waiting.lag = lag;
-  waiting.row = row;
-  waiting.shown = shown;
+  waiting.row = step.row;
+  waiting.shown = step.shown;
+  waiting.gain = step.gain;
+  waiting.novelty = step.novelty;
   waiting.left = false;
   waiting.believed = true;
   if (evidence_->doubt < little_doubt) waiting.doubted = false;
@@ -290,19 +307,16 @@ double PendingAnswers::margin(const PlaceMap& map, std::size_t slot, std::size_t
 }
 
 /// What sequence search says of the frames along the trace.
-void PendingAnswers::ask_windows(const PlaceMap& map, std::uint64_t newest,
-                                 std::span<BeliefTraces::Step> trace) noexcept {
+void PendingAnswers::look_at_windows(const PlaceMap& map, std::uint64_t newest,
+                                     std::span<BeliefTraces::Step> trace) noexcept {
   constexpr std::size_t windows = 10;
   std::size_t asked = 0;
   for (std::size_t back = after_centre_; back < trace.size(); ++back) {
     const std::uint64_t frame = newest - back;
     const std::size_t slot = slot_of(frame);
     if (waiting_[slot].frame != frame || waiting_[slot].lines == 0) continue;
-    const double better = margin(map, slot, trace[back].row);
-    if (asked++ < windows) evidence_->margin += better / static_cast<double>(windows);
-    constexpr double weight = 16.0;
-    constexpr double usual = 0.04;
-    trace[back].gain += weight * trace[back].novelty * (better - usual);
+    trace[back].margin = margin(map, slot, trace[back].row);
+    if (asked++ < windows) evidence_->margin += trace[back].margin / static_cast<double>(windows);
   }
 }
 
@@ -316,6 +330,9 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
     const std::uint64_t began = frame < oldest ? oldest_before_ : oldest;
     give(map, steps, waiting, may_be_new(map, began));
     if (answers_[given_ - 1].gate != Gate::match) continue;
+    if (waiting.lines > 0) {
+      accepted_.take(waiting.gain, waiting.novelty, margin(map, slot_of(frame), waiting.row));
+    }
     if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
       last_found_ = Found{frame, waiting.row};
     }

@@ -48,7 +48,12 @@ constexpr double fast_pace = 1.35;
 constexpr double jumps_often = 0.01;
 
 constexpr double most_forgotten = 0.05;  // of a sum or mean over frames, with each
-constexpr double right_gain = 1.25;  // by novelty: a row that gains less may not be right any more
+
+// By novelty: a row that gains less may not be right any more, unless it never gained as much.
+constexpr double right_gain = 1.25;
+constexpr double part_of_usual = 0.75;
+constexpr double newest_gain = 0.02;  // in what it usually gains, by novelty
+
 constexpr std::size_t found_most = 15;
 constexpr std::size_t old_most = PlaceBelief::most - found_most - 1;  // one comes by the line
 
@@ -366,7 +371,9 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     at.gain = (1.0 - forgotten_by(w)) * at.gain + at.told;
     at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * gain.contrast;
     at.age += w;
-    at.doubt = std::max(0.0, at.doubt + scene.change * (right_gain - l));
+    const double least = std::clamp(part_of_usual * at.usual, 0.0, right_gain);
+    at.doubt = std::max(0.0, at.doubt + scene.change * (least - l));
+    at.usual += newest_gain * w * (l - at.usual);
   }
   std::swap(rows_, next_);
   sharpen(order, scene, std::span(gains).first(count_));

@@ -39,7 +39,7 @@ double gain_by_novelty(std::span<const BeliefTraces::Step> trace) {
   double gained = 0.0;
   double novelty = 0.0;
   for (const BeliefTraces::Step& step : trace) {
-    gained += step.gain;
+    gained += step.gain + step.besides;
     novelty += step.novelty;
   }
   return novelty > 0.0 ? gained / novelty : 0.0;
@@ -122,7 +122,7 @@ std::span<const TraceSpan::On> TraceSpan::find(std::span<const BeliefTraces::Ste
   double gone = 0.0;
   for (std::size_t back = trace.size(); back-- > 0;) {
     const BeliefTraces::Step& step = trace[back];
-    const double likelier = exponential(step.gain - step.asked);
+    const double likelier = exponential(step.gain + step.besides - step.asked);
     const Chances& chances = chances_of(step);
     if (back + 1 < trace.size()) {
       const double leaves = on * chances.ends;

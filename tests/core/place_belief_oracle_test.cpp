@@ -29,6 +29,7 @@ class NaiveBelief {
 
   struct Row {
     double mass = 0.0, gain = 0.0, wrong = 0.0, clear = 0.0, age = 0.0, doubt = 0.0, pace = 1.0;
+    double usual = 2.0;  // decaying mean of l
     double past = -10.0;
     double in_step = 0.0, step = 0.0;  // decaying mean, and the newest; NaN: nothing is known
     std::vector<std::size_t> way;      // rows that it came through, the newest last
@@ -175,7 +176,8 @@ class NaiveBelief {
         }
       }
       at.age += w;
-      at.doubt = std::max(0.0, at.doubt + change * (1.25 - l));
+      at.doubt = std::max(0.0, at.doubt + change * (std::clamp(0.75 * at.usual, 0.0, 1.25) - l));
+      at.usual += 0.02 * w * (l - at.usual);
     }
     // Sharpen.
     const auto sharp = [&](std::size_t row) {

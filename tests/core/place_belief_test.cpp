@@ -124,6 +124,51 @@ TEST(PlaceBelief, ClosesLoopsAtAnotherPaceThanBefore) {
   }
 }
 
+/// Every second frame of a way from a first one on.
+oracle::Vectors every_second(const oracle::Vectors& way, std::size_t first) {
+  oracle::Vectors some;
+  for (std::size_t i = first; i < way.size(); i += 2) some.push_back(way[i]);
+  return some;
+}
+
+/// Frames far from each other, taken half way between those of the map: they gain little, though
+/// they are right.
+TEST(PlaceBelief, FindsFramesThatWereTakenBetweenThoseOfTheMap) {
+  struct Case {
+    float noise;
+    double least_localised;
+    double least_in_loops;
+  };
+  constexpr std::size_t frames = 400;
+  for (const auto& [noise, least_localised, least_in_loops] :
+       {Case{2.5F, 0.95, 0.85}, Case{3.0F, 0.37, 0.19}}) {
+    SCOPED_TRACE(noise);
+    std::size_t localised = 0;
+    std::size_t in_loops = 0;
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      constexpr float kept = 0.5F;
+      const oracle::Vectors map = every_second(way(seed, 2 * frames, noise, 1, size, kept), 0);
+      const oracle::Vectors query = every_second(way(seed, 2 * frames, noise, 2, size, kept), 1);
+      oracle::Vectors both = map;
+      both.insert(both.end(), query.begin(), query.end());
+      const auto count = [](const Said& said, std::size_t begins, std::size_t& found) {
+        for (const Answer& answer : said.answers) {
+          if (answer.gate != Gate::match) continue;
+          ++found;
+          EXPECT_NEAR(static_cast<double>(answer.match->place),
+                      static_cast<double>(answer.frame) - static_cast<double>(begins), 10.0);
+        }
+      };
+      count(drive_through(map, query, settings(Use::localise)), 0, localised);
+      count(drive_through({}, both, settings(Use::close_loops)), frames, in_loops);
+    }
+    constexpr std::size_t all = 6 * frames;
+    std::printf("localised %zu, in loops %zu of %zu frames\n", localised, in_loops, all);
+    EXPECT_GE(static_cast<double>(localised), least_localised * static_cast<double>(all));
+    EXPECT_GE(static_cast<double>(in_loops), least_in_loops * static_cast<double>(all));
+  }
+}
+
 TEST(PlaceBelief, KnowsWhereItIsOnAKnownWayEdgesIncluded) {
   const oracle::Vectors reference = way(1, 300, 0.5F, 1);
   const oracle::Vectors query = way(1, 300, 0.5F, 2);

@@ -30,7 +30,8 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     std::vector<BeliefTraces::Step> trace;
     // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
-      trace.push_back({i, 16.0 * share() - 8.0, share(), share(), 0.0, random() % 2 == 0});
+      trace.push_back({i, 12.0 * share() - 6.0, share(), share(), 0.0, random() % 2 == 0});
+      trace.back().besides = 4.0 * share() - 2.0;
     }
     const std::size_t asked = 1 + random() % frames;
     // Frames are counted from the oldest. One that has changed wholly is a cut in every other
@@ -41,7 +42,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     double gained = 0.0;
     double novelty = 0.0;
     for (const BeliefTraces::Step& step : trace) {
-      gained += step.gain;
+      gained += step.gain + step.besides;
       novelty += step.novelty;
     }
     const double usually = loops ? std::max(usual, 0.7 * gained / novelty) : usual;
@@ -54,7 +55,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     const auto seen = [&](std::size_t i, State state) {
       const auto step = step_of(i);
       const double asked_of_it = usually * step.novelty;
-      if (state == on) return std::exp(step.gain - asked_of_it);
+      if (state == on) return std::exp(step.gain + step.besides - asked_of_it);
       if (state == fresh) return 1.0;
       if (loops) {
         return std::exp(std::min(0.0, (step.elsewhere ? 2.0 * step.novelty : 0.0) - asked_of_it));

@@ -36,6 +36,9 @@ class BeliefTraces {
     /// As `in_step` has it; NaN: nothing is known.
     double in_step = std::numeric_limits<double>::quiet_NaN();
     bool shown = false;  ///< whether the frame by itself shows the row
+    /// Its window's margin there; NaN: no line was found.
+    double margin = std::numeric_limits<double>::quiet_NaN();
+    double besides = 0.0;  ///< what that, and the change, say for the trace besides the gain
   };
 
   /// Begins the next frame; `set` fills it in.

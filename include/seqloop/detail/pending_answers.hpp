@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "seqloop/detail/accepted_frames.hpp"
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/frame_steps.hpp"
 #include "seqloop/detail/jump_rate.hpp"
@@ -87,8 +88,12 @@ class PendingAnswers {
   /// Frames are missing, nobody knows how many: nothing was found lately, or is judged.
   void forget_what_was_found() noexcept;
 
-  /// What comes is another drive: the robot that was carried about in this one may not be in that.
-  void forget_jumps() noexcept { jump_rate_ = {}; }
+  /// What comes is another drive: the robot that was carried about in this one, or saw little of its
+  /// places, may not do so in that.
+  void forget_drive() noexcept {
+    jump_rate_ = {};
+    accepted_ = {};
+  }
 
   /// Writes the answers that are due, in order of frame, behind those that are there. A frame that
   /// is a place, and is likely another one too, is linked to that.
@@ -148,19 +153,19 @@ class PendingAnswers {
     double doubt;           // whether the robot was still there, as it came
     bool doubted;           // it has risen too much since
     bool shown;             // whether it by itself shows the row
+    double gain;            // there, as `BeliefTraces::Step` has it
+    double novelty;         // as it came
     std::size_t lines;      // found
     Lead lead;              // that `margin` took the logarithm of last
   };
 
   /// What a trace that came through a frame says of it.
   struct LookedBack {
-    std::size_t row;
     double right;           // that the trace is right
     double same_place;      // as `Waiting` has it
     TraceSpan::On on;       // that the frame lies on it
     TraceSpan::On carried;  // as `Waiting` has it
     std::uint64_t lag;      // frames that have come since
-    bool shown;             // as `Waiting` has it
   };
 
   /// A power of two, so that nothing is divided: a step asks for this many hundred times.
@@ -182,13 +187,14 @@ class PendingAnswers {
   [[nodiscard]] bool is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
-  void ask_windows(const PlaceMap& map, std::uint64_t newest,
-                   std::span<BeliefTraces::Step> trace) noexcept;
+  void look_at_windows(const PlaceMap& map, std::uint64_t newest,
+                       std::span<BeliefTraces::Step> trace) noexcept;
   void ask_belief(const PlaceMap& map, std::uint64_t newest,
                   std::span<BeliefTraces::Step> trace) noexcept;
   void ask_steps(std::span<BeliefTraces::Step> trace) const noexcept;
   void keep_in_doubt(std::uint64_t newest) noexcept;
-  void look_back(const PlaceOrder& order, Waiting& waiting, const LookedBack& back) noexcept;
+  void look_back(const PlaceOrder& order, Waiting& waiting, const BeliefTraces::Step& step,
+                 const LookedBack& back) noexcept;
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
   [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
@@ -214,6 +220,7 @@ class PendingAnswers {
   std::span<TraceSpan::On> carried_;     // [the same]
   TraceSpan span_;
   JumpRate jump_rate_;
+  AcceptedFrames accepted_;
   std::optional<Found> last_found_;  // by the newest frame whose answer was accepted
   std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago
 };

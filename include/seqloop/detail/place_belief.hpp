@@ -121,6 +121,7 @@ class PlaceBelief {
     double told = 0.0;      // what the newest frame said for it
     double gain = 0.0;      // decaying sum of that
     double wrong = 0.0;     // the same of the frames at which it was wrong
+    double usual = 2.0;     // decaying mean of what frames said, by novelty
     double past = -10.0;    // best log-odds on the way
     double contrast = 0.0;  // decaying mean
     double step = 0.0;      // the newest `in_step`; NaN: nothing is known
