@@ -53,6 +53,7 @@ constexpr double most_forgotten = 0.05;  // of a sum or mean over frames, with e
 constexpr double right_gain = 1.25;
 constexpr double part_of_usual = 0.75;
 constexpr double newest_gain = 0.02;  // in what it usually gains, by novelty
+constexpr double doubt_lost = 0.015;  // by novelty: a bad stretch is forgotten by the way
 
 constexpr std::size_t found_most = 15;
 constexpr std::size_t old_most = PlaceBelief::most - found_most - 1;  // one comes by the line
@@ -372,7 +373,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * gain.contrast;
     at.age += w;
     const double least = std::clamp(part_of_usual * at.usual, 0.0, right_gain);
-    at.doubt = std::max(0.0, at.doubt + scene.change * (least - l));
+    at.doubt = std::max(0.0, (1.0 - doubt_lost * w) * at.doubt + scene.change * (least - l));
     at.usual += newest_gain * w * (l - at.usual);
   }
   std::swap(rows_, next_);

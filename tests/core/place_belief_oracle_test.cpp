@@ -176,7 +176,8 @@ class NaiveBelief {
         }
       }
       at.age += w;
-      at.doubt = std::max(0.0, at.doubt + change * (std::clamp(0.75 * at.usual, 0.0, 1.25) - l));
+      at.doubt = std::max(0.0, (1.0 - 0.015 * w) * at.doubt +
+                                   change * (std::clamp(0.75 * at.usual, 0.0, 1.25) - l));
       at.usual += 0.02 * w * (l - at.usual);
     }
     // Sharpen.
