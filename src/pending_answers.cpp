@@ -174,13 +174,14 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const double usual = belief.usual_gain();
   const double novelty = belief.usual_novelty();
   // Where a robot that was never carried away is surer than it has to be, no more is asked of a
-  // frame than those show that were accepted.
+  // frame than those show that were accepted; of its window only where that is less than usual.
   constexpr double much = 5.0;
   const bool sure = best - evidence_->asked >= much && jumps() <= 0.0;
   ask_belief(map, newest, trace);
-  ask_windows(trace, sure ? accepted_.least_margin(usual_margin) : usual_margin);
+  const double gain = sure ? accepted_.least_gain(usual) : usual;
+  ask_windows(trace, gain < usual ? accepted_.least_margin(usual_margin) : usual_margin);
   ask_steps(trace);
-  span_.ask(trace, sure ? accepted_.least_gain(usual) : usual);
+  span_.ask(trace, gain);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
