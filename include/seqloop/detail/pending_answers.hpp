@@ -88,8 +88,8 @@ class PendingAnswers {
   /// Frames are missing, nobody knows how many: nothing was found lately, or is judged.
   void forget_what_was_found() noexcept;
 
-  /// What comes is another drive: the robot that was carried about in this one, or saw little of its
-  /// places, may not do so in that.
+  /// What comes is another drive: a robot that was carried about in this one, or saw little of its
+  /// places, may not in that.
   void forget_drive() noexcept {
     jump_rate_ = {};
     accepted_ = {};
