@@ -39,11 +39,11 @@ double trace_is_right(double best) {
   return logistic(std::min(1.5 * best - 0.6, 2.75 * best - 5.05));
 }
 
-/// What a frame's window says beyond what is usual of windows on a trace.
-void ask_windows(std::span<BeliefTraces::Step> trace, double usual) {
+/// What frames' windows say beyond what is asked of them. @param least margin
+void ask_windows(std::span<BeliefTraces::Step> trace, double least) {
   constexpr double weight = 16.0;
   for (BeliefTraces::Step& step : trace) {
-    if (!std::isnan(step.margin)) step.besides += weight * step.novelty * (step.margin - usual);
+    if (!std::isnan(step.margin)) step.besides += weight * step.novelty * (step.margin - least);
   }
 }
 
@@ -174,14 +174,15 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   const double usual = belief.usual_gain();
   const double novelty = belief.usual_novelty();
   // Where a robot that was never carried away is surer than it has to be, no more is asked of a
-  // frame than those show that were accepted; of its window only where that is less than usual.
+  // frame than a part of what those show that were accepted.
   constexpr double much = 5.0;
   const bool sure = best - evidence_->asked >= much && jumps() <= 0.0;
   ask_belief(map, newest, trace);
-  const double gain = sure ? accepted_.least_gain(usual) : usual;
-  ask_windows(trace, gain < usual ? accepted_.least_margin(usual_margin) : usual_margin);
+  const AcceptedFrames::Asked all{usual, usual_margin};
+  const AcceptedFrames::Asked asked = sure ? accepted_.asked(all) : all;
+  ask_windows(trace, asked.margin);
   ask_steps(trace);
-  span_.ask(trace, gain);
+  span_.ask(trace, asked.gain);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (const double jumps = jump_rate_.chance(); jumps > 0.0) {

@@ -86,9 +86,9 @@ TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double usual) const noexcept {
+void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double least) const noexcept {
   constexpr double share = 0.7;
-  const double by_novelty = localises_ ? usual : std::max(usual, share * gain_by_novelty(trace));
+  const double by_novelty = localises_ ? least : std::max(least, share * gain_by_novelty(trace));
   for (BeliefTraces::Step& step : trace) step.asked = by_novelty * step.novelty;
 }
 

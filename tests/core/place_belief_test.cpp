@@ -71,10 +71,10 @@ std::size_t accepted(const Said& said) {
   return static_cast<std::size_t>(std::ranges::count(said.answers, Gate::match, &Answer::gate));
 }
 
-/// Every n-th frame of a way, n being `by`.
-oracle::Vectors thinned(const oracle::Vectors& way, double by) {
+/// Every n-th frame of a way from a first one on, n being `by`.
+oracle::Vectors thinned(const oracle::Vectors& way, double by, double first = 0.0) {
   oracle::Vectors some;
-  for (double i = 0.0; i < static_cast<double>(way.size()); i += by) {
+  for (double i = first; i < static_cast<double>(way.size()); i += by) {
     some.push_back(way[static_cast<std::size_t>(i)]);
   }
   return some;
@@ -124,13 +124,6 @@ TEST(PlaceBelief, ClosesLoopsAtAnotherPaceThanBefore) {
   }
 }
 
-/// Every second frame of a way from a first one on.
-oracle::Vectors every_second(const oracle::Vectors& way, std::size_t first) {
-  oracle::Vectors some;
-  for (std::size_t i = first; i < way.size(); i += 2) some.push_back(way[i]);
-  return some;
-}
-
 /// Frames far from each other, taken half way between those of the map: they gain little, though
 /// they are right.
 TEST(PlaceBelief, FindsFramesThatWereTakenBetweenThoseOfTheMap) {
@@ -147,8 +140,8 @@ TEST(PlaceBelief, FindsFramesThatWereTakenBetweenThoseOfTheMap) {
     std::size_t in_loops = 0;
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
       constexpr float kept = 0.5F;
-      const oracle::Vectors map = every_second(way(seed, 2 * frames, noise, 1, size, kept), 0);
-      const oracle::Vectors query = every_second(way(seed, 2 * frames, noise, 2, size, kept), 1);
+      const oracle::Vectors map = thinned(way(seed, 2 * frames, noise, 1, size, kept), 2.0);
+      const oracle::Vectors query = thinned(way(seed, 2 * frames, noise, 2, size, kept), 2.0, 1.0);
       oracle::Vectors both = map;
       both.insert(both.end(), query.begin(), query.end());
       const auto count = [](const Said& said, std::size_t begins, std::size_t& found) {

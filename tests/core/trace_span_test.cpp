@@ -30,7 +30,7 @@ TEST(TraceSpan, IsTheSumOverAllWays) {
     std::vector<BeliefTraces::Step> trace;
     // So much is gained and lost that it comes back in some rounds.
     for (std::size_t i = 0; i < frames; ++i) {
-      trace.push_back({i, 12.0 * share() - 6.0, share(), share(), 0.0, random() % 2 == 0});
+      trace.push_back({i, 16.0 * share() - 8.0, share(), share(), 0.0, random() % 2 == 0});
       trace.back().besides = 4.0 * share() - 2.0;
     }
     const std::size_t asked = 1 + random() % frames;

@@ -25,18 +25,22 @@ class AcceptedFrames {
     margin_ += share * (margin - margin_);
   }
 
-  /// @param most by novelty, 0 or more. @return what a frame has to gain, 0 .. most
-  [[nodiscard]] double least_gain(double most) const noexcept { return least(gain_, most); }
+  /// What is asked of a frame.
+  struct Asked {
+    double gain;    ///< by novelty
+    double margin;  ///< of its window
+  };
 
-  /// @param most 0 or more. @return the same of the margin of its window
-  [[nodiscard]] double least_margin(double most) const noexcept { return least(margin_, most); }
-
- private:
-  [[nodiscard]] double least(double usual, double most) const noexcept {
+  /// @param most what is asked where nothing is known, 0 or more
+  /// @return a part of what accepted frames had, 0 .. most; of the margin only where it is less of
+  /// the gain: elsewhere frames show enough of their places
+  [[nodiscard]] Asked asked(Asked most) const noexcept {
     constexpr double part = 0.4;
-    return novelty_ > 0.0 ? std::clamp(part * usual, 0.0, most) : most;
+    if (novelty_ <= 0.0 || part * gain_ >= most.gain) return most;
+    return {std::max(0.0, part * gain_), std::clamp(part * margin_, 0.0, most.margin)};
   }
 
+ private:
   double novelty_ = 0.0;
   double gain_ = 0.0;    // by novelty, mean
   double margin_ = 0.0;  // mean

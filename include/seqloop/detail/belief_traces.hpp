@@ -28,17 +28,19 @@ class BeliefTraces {
   /// A frame on the way to a row.
   struct Step {
     std::size_t row;
-    double gain;         ///< ln of how much likelier the frame is there than somewhere new
-    double novelty;      ///< of the frame, 0 .. 1
-    double change;       ///< of the frame, as `Scene` has it
-    double asked = 0.0;  ///< gain from which on the frame rather lies on the trace than before it
+    double gain;     ///< ln of how much likelier the frame is there than somewhere new
+    double novelty;  ///< of the frame, 0 .. 1
+    double change;   ///< of the frame, as `Scene` has it
+    /// Gain, with what is said besides, from which on the frame rather lies on the trace than
+    /// before it.
+    double asked = 0.0;
     bool elsewhere = false;  ///< whether the belief of its time was elsewhere
     /// As `in_step` has it; NaN: nothing is known.
     double in_step = std::numeric_limits<double>::quiet_NaN();
     bool shown = false;  ///< whether the frame by itself shows the row
     /// Its window's margin there; NaN: no line was found.
     double margin = std::numeric_limits<double>::quiet_NaN();
-    double besides = 0.0;  ///< what that, and the change, say for the trace besides the gain
+    double besides = 0.0;  ///< what that and `in_step` say for the trace besides the gain
   };
 
   /// Begins the next frame; `set` fills it in.

@@ -15,7 +15,7 @@ struct Evidence {
   double in_step = 0.0;   ///< how far it changes as the frames do, as `in_step` has it
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
-  double doubt = 0.0;     ///< how much less than right rows do the newest frames speak for it
+  double doubt = 0.0;     ///< how much less the newest frames speak for it than for right rows
   double jumps = 0.0;     ///< the chance of a jump, if it was found on this map lately, 0 .. .5
   double asked = 0.0;     ///< how much more the log-odds have to be, since much looks alike
 };

@@ -31,12 +31,12 @@ class TraceSpan {
   /// Says what each frame has to gain. Where roads meet, the frames that lead there look alike: in
   /// a drive that closes loops each has to gain .7 of what they gain on average.
   /// @param trace the newest frame first
-  /// @param usual what wrong rows gain, by novelty; 0 or more
-  void ask(std::span<BeliefTraces::Step> trace, double usual) const noexcept;
+  /// @param least what a frame has to gain at least, by novelty; 0 or more
+  void ask(std::span<BeliefTraces::Step> trace, double least) const noexcept;
 
   /// @param trace  the newest frame first; at most `most`
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1
-  /// @param usual  as `ask` has it
+  /// @param usual  what wrong rows gain, by novelty; 0 or more
   /// @param novelty what is usually new of this drive's frames, 0 .. 1
   /// @param jumps  the chance that the robot is carried away with a frame, beyond what is usual, 0
   ///               .. 0.5. The higher it is, the less does `before` speak for the oldest frame
