@@ -39,11 +39,14 @@ double trace_is_right(double best) {
   return logistic(std::min(1.5 * best - 0.6, 2.75 * best - 5.05));
 }
 
-/// What frames' windows say beyond what is asked of them. @param least margin
-void ask_windows(std::span<BeliefTraces::Step> trace, double least) {
-  constexpr double weight = 16.0;
+/// Counts what is known of frames beyond what is asked of them for the trace; what is less, against
+/// it.
+/// @param known of a frame; NaN: nothing
+void count_besides(std::span<BeliefTraces::Step> trace, double BeliefTraces::Step::*known,
+                   double weight, double least) {
   for (BeliefTraces::Step& step : trace) {
-    if (!std::isnan(step.margin)) step.besides += weight * step.novelty * (step.margin - least);
+    const double value = step.*known;
+    if (!std::isnan(value)) step.besides += weight * step.novelty * (value - least);
   }
 }
 
@@ -176,16 +179,18 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   // Where a robot that was never carried away is surer than it has to be, no more is asked of a
   // frame than a part of what those show that were accepted.
   constexpr double much = 5.0;
-  const bool sure = best - evidence_->asked >= much && jumps() <= 0.0;
+  const double jumps = jump_rate_.chance();
+  const bool sure = best - evidence_->asked >= much && jumps <= 0.0;
   ask_belief(map, newest, trace);
   const AcceptedFrames::Asked all{usual, usual_margin};
   const AcceptedFrames::Asked asked = sure ? accepted_.asked(all) : all;
-  ask_windows(trace, asked.margin);
+  constexpr double of_windows = 16.0;
+  count_besides(trace, &BeliefTraces::Step::margin, of_windows, asked.margin);
   ask_steps(trace);
   span_.ask(trace, asked.gain);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
-  if (const double jumps = jump_rate_.chance(); jumps > 0.0) {
+  if (jumps > 0.0) {
     std::ranges::copy(span_.find(trace, was_on, usual, novelty, jumps, frames), carried_.begin());
     carried = carried_.first(frames);
   }
@@ -230,9 +235,7 @@ void PendingAnswers::ask_steps(std::span<BeliefTraces::Step> trace) const noexce
   }
   if (novelty <= 0.0) return;
   const double usual = std::min(most, share * sum / novelty);
-  for (BeliefTraces::Step& step : trace) {
-    if (!std::isnan(step.in_step)) step.besides += weight * step.novelty * (step.in_step - usual);
-  }
+  count_besides(trace, &BeliefTraces::Step::in_step, weight, usual);
 }
 
 /// A trace that closes loops tells no end, but the doubt about the row that it leads on to does.
