@@ -43,6 +43,13 @@ bool was_closed(sqlite3* handle) {
 
 Fault fault_of(const std::filesystem::path& path, const DatabaseError& error) {
   const std::string name = path.string();
+  if (error.is_half_written()) {
+    return {name,
+            "whoever wrote it last was killed while doing so, and " + name +
+                "-journal has what it was before, but may not be written",
+            "look at the rights of the two and of their folder; `seqloop map recover` copies what "
+            "they hold into a new file"};
+  }
   switch (error.primary()) {
     case SQLITE_NOTADB:
       return {name,

@@ -22,6 +22,8 @@ class DatabaseError : public std::runtime_error {
   DatabaseError(int code, const std::string& message) : runtime_error(message), code_(code) {}
   [[nodiscard]] int code() const noexcept { return code_; }  ///< extended
   [[nodiscard]] int primary() const noexcept { return code_ & 0xFF; }
+  /// Whether a journal beside the file has to make it what it was before it can be read.
+  [[nodiscard]] bool is_half_written() const noexcept { return code_ == SQLITE_READONLY_ROLLBACK; }
 
  private:
   int code_;

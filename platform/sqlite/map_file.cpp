@@ -74,6 +74,13 @@ void check_log(const fs::path& path, const Database& database) {
                     "remove it; or put the map that it belongs to back, to have what is in both"});
 }
 
+/// Makes a file what it was before somebody wrote it and was killed, as whoever writes it next
+/// would. Throws DatabaseError: it may not be written, or is damaged.
+void roll_back(const fs::path& path) {
+  Database database(path, SQLITE_OPEN_READWRITE);
+  (void)database.number("SELECT count(*) FROM sqlite_master");
+}
+
 void check_file(const fs::path& path) {
   struct stat status {};
   const std::string name = path.string();
@@ -242,6 +249,10 @@ MapFile MapFile::read_only(const fs::path& path) {
     try {
       return begin(nullptr);
     } catch (const DatabaseError& refused) {
+      if (refused.is_half_written()) {
+        roll_back(path);
+        return begin(nullptr);
+      }
       const fs::path folder = fs::absolute(path).parent_path();
       const bool fixed = ::access(folder.c_str(), W_OK) != 0;
       if (!fixed ||

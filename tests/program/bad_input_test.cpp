@@ -271,6 +271,15 @@ TEST_F(BadInput, CommandLines) {
   expect_refused("match --quer good.npy", {"did you mean --query"});
   expect_refused("match --ds", {"ds"});
   expect_refused("match --ds 10 --ds 20", {"ds: given more than once"});
+  folder_.write("c.toml", "");
+  expect_refused("match --config c.toml --config c.toml",
+                 {"config: given more than once", "query"});
+  expect_refused("match --hepl", {"did you mean --help"});
+  folder_.write("a.jsonl", "{}\n");
+  folder_.write("b.jsonl", "{}\n");
+  for (const char* two : {"a.jsonl b.jsonl", "--run a.jsonl b.jsonl", "a.jsonl --run b.jsonl"}) {
+    expect_refused("report " + std::string(two) + " --out p.html", {"more than one run is given"});
+  }
   expect_refused("plan --max-places 0", {"places"});
   expect_refused("plan --max-places 10 --descriptor-size 131073",
                  {"descriptor-size: 131073", "--arithmetic float", "--relocalise off",

@@ -117,6 +117,18 @@ TEST_F(Run, BenchTimesEveryPartOfAStepByEveryContender) {
   }
 }
 
+TEST_F(Run, BenchTimesHowFastAMapIsOpened) {
+  if (SEQLOOP_MAPS == 0) GTEST_SKIP() << "this build keeps no maps in files";
+  const auto rows =
+      nlohmann::json::parse(expect_done("bench --only open --n 300 --d 64 --rounds 1 --json").out);
+  ASSERT_EQ(rows.size(), 3U);
+  for (const nlohmann::json& row : rows) {
+    EXPECT_EQ(row["what"], "open");
+    EXPECT_GT(row["bytes"], 300 * 64) << row["by"];
+    EXPECT_GT(row["p50_us"], 0.0) << row["by"];
+  }
+}
+
 TEST_F(Run, BenchDrivesARobotThatIsRecognised) {
   const std::string said = expect_done("bench --only step --n 900 --d 64 --rounds 400").err;
   for (std::size_t at = 0, line = 0; line < 3; ++line) {

@@ -892,6 +892,54 @@ TEST_F(Map, IsReadFromAFolderThatNobodyMayWriteTo) {
   fs::permissions(folder_.path(), fs::perms(0755));
 }
 
+/// Writes over a map as `compact` does, so that pages of it are changed on the disk, and leaves it
+/// and its journal as a kill at that moment would: beside it, under another name.
+void leave_half_written(const fs::path& from, const fs::path& to) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(from.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database,
+                         "PRAGMA journal_mode = DELETE; PRAGMA cache_size = 1; BEGIN IMMEDIATE;"
+                         "UPDATE block SET places = zeroblob(length(places))",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  for (const char* tail : {"", "-journal"}) fs::copy(from.string() + tail, to.string() + tail);
+  sqlite3_close(database);
+}
+
+TEST_F(Map, WhoseWriterWasKilledWhileItRewroteTheFileIsReadAsItWas) {
+  make();
+  const std::string before = content();
+  const fs::path killed = file("killed.seqloop");
+  leave_half_written(file(), killed);
+  const auto journal = killed.string() + "-journal";
+  ASSERT_GT(fs::file_size(journal), 512U) << "pages that are to be put back";
+  EXPECT_EQ(content(MapFile::read_only(killed)), before);
+  EXPECT_FALSE(fs::exists(journal));
+}
+
+TEST_F(Map, WhoseWriterWasKilledSaysSoWhereItMayNotBeWritten) {
+  make();
+  const fs::path killed = file("killed.seqloop");
+  leave_half_written(file(), killed);
+  fs::permissions(killed, fs::perms(0444));
+  fs::permissions(folder_.path(), fs::perms(0555));
+  {
+    const Other other([&killed](const auto& done) {
+      if (::getuid() == 0 && ::setuid(65534) != 0) throw std::runtime_error("cannot be anybody");
+      std::string refused;
+      try {
+        (void)MapFile::read_only(killed);
+      } catch (const SetupError& error) {
+        refused = error.what();
+      }
+      done(says(refused, "was killed") && says(refused, "seqloop map recover"));
+    });
+    EXPECT_TRUE(other.well());
+  }
+  fs::permissions(folder_.path(), fs::perms(0755));
+  EXPECT_GT(fs::file_size(killed.string() + "-journal"), 512U);
+}
+
 TEST_F(Map, OfTheFirstReleaseIsRead) {
   make();
   const MapFile map = MapFile::read_only(SEQLOOP_SAMPLE_MAPS "/version_1.seqloop");

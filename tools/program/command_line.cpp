@@ -35,7 +35,7 @@ enum ExitCode : int { done = 0, failed_while_running = 1, bad_usage = 2 };
 /// What the command line says of one verb, as text.
 struct Given {
   std::vector<std::pair<const Option*, std::vector<std::string>>> values;
-  std::optional<std::string> config_file;
+  std::vector<std::string> config_files;
 };
 
 const char* value_name(ValueKind kind) {
@@ -116,7 +116,11 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
     flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }
   const std::string general = "General";
-  sub->add_option("--config", given.config_file, "settings from a TOML file; flags win over it")
+  sub->add_option("--config", given.config_files, "settings from a TOML file; flags win over it")
+      ->type_name(value_name(ValueKind::text))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false)
       ->group(general);
   sub->set_help_flag("-h,--help", "print the flags that are used most")->group(general);
   sub->set_help_all_flag("--help-all", "print all flags")->group(general);
@@ -130,7 +134,7 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
 Faults settle(const Verb& verb, const Given& given, const std::vector<std::string>& extras,
               const std::vector<std::string>& behind, const std::vector<std::string>& all_names) {
   Faults faults;
-  std::vector<std::string> own_names{"config"};
+  std::vector<std::string> own_names{"config", "help", "help-all", "version"};
   for (const Option& option : verb.options.options()) own_names.push_back(option.name);
   const std::string help = "see seqloop " + verb.name + " --help";
   bool after_unknown_flag = false;
@@ -168,16 +172,17 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
       faults.push_back(std::move(fault));
     }
   }
-  if (given.config_file && given.config_file->empty()) {
+  if (given.config_files.size() > 1) faults.push_back({"config", "given more than once"});
+  const std::string config = given.config_files.empty() ? "" : given.config_files.front();
+  if (!given.config_files.empty() && config.empty()) {
     faults.push_back(empty_value("config"));
-  } else if (given.config_file) {
-    for (Fault& fault :
-         apply_config_file(*given.config_file, verb.options, set_already, all_names)) {
+  } else if (!config.empty()) {
+    for (Fault& fault : apply_config_file(config, verb.options, set_already, all_names)) {
       faults.push_back(std::move(fault));
     }
   }
   std::vector<FileUse> files = verb.options.files();
-  files.push_back({"config", Access::reads, given.config_file.value_or("")});
+  files.push_back({"config", Access::reads, config});
   refuse_overwriting(faults, files);
   return faults;
 }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "program/map/lasting_map.hpp"
+#include "program/map/place_form.hpp"
 #include "program/process/available_memory.hpp"
 #include "program/process/say.hpp"
 #include "seqloop/linux/touched_memory.hpp"
@@ -59,8 +60,10 @@ std::unique_ptr<LastingMap> open(const fs::path& file, std::size_t descriptor_si
 }
 
 void write(const fs::path& file, const Capacity& size) {
-  open(file, size.descriptor_size, false);  // makes it
-  sqlite::MapFile map = sqlite::MapFile::open(file, std::nullopt);
+  // Its file does not stay: no session comes into it.
+  const PlaceForm form = open(file, size.descriptor_size, false)->form();
+  sqlite::MapFile map = sqlite::MapFile::open(
+      file, sqlite::MapForm{form.form, form.describer, form.descriptor_size, form.place_bytes});
   const std::int64_t session = map.begin_session("bench", 0, "");
   std::vector<std::byte> places(places_a_batch * size.descriptor_size);
   std::vector<sqlite::PlaceRecord> records(places_a_batch);

@@ -28,9 +28,9 @@ std::size_t descriptor_size(const FrameSource& drive, const Describer* describer
   return described != nullptr ? described->size() : describer->size();
 }
 
-std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
-                     const MatcherConfig& config, Progress& progress,
-                     const std::function<void(const Frame&)>& look) {
+Mapped fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
+                const MatcherConfig& config, Progress& progress,
+                const std::function<void(const Frame&)>& look) {
   // Where nothing is known of descriptors, the drive is learnt as a whole before its first place is
   // standardised.
   const bool learns = config.standardisation.on && map.statistics().frames() == 0;
@@ -94,7 +94,7 @@ std::size_t fill_map(PlaceMap& map, FrameSource& drive, Describer* describer,
         "--source REFERENCE --map FILE'",
         most_looked_through));
   }
-  return blank_frames;
+  return {places, blank_frames};
 }
 
 }  // namespace seqloop::program

@@ -104,8 +104,8 @@ void match(const MatchSettings& settings, Faults faults) {
     files::DescriptorSource drive(std::move(*reference));
     reference.reset();
     Progress mapping("mapping", drive.frame_count());
-    const std::size_t blank_places = fill_map(map, drive, nullptr, config, mapping);
-    tell_blank(settings.reference, blank_places, map.size());
+    const Mapped mapped = fill_map(map, drive, nullptr, config, mapping);
+    tell_blank(settings.reference, mapped.blank, mapped.frames);
   }
   if (lasting) lasting->load(map);
   memory.wait();

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "files/text_file.hpp"
 #include "program/options/verb.hpp"
@@ -23,7 +24,7 @@ struct ReportSettings {
   std::filesystem::path run;
   std::filesystem::path summary;
   std::filesystem::path out;
-  std::size_t words = 0;  // without a flag in front
+  std::vector<std::string> words;  // without a flag in front
 };
 
 /// Adds a fault where a file cannot be read.
@@ -68,7 +69,9 @@ void report(const ReportSettings& settings, Faults faults) {
   take_interruptions();
   if (settings.run.empty())
     faults.push_back({"run", "not given", "name what `seqloop run --out` wrote"});
-  if (settings.words > 1)
+  // The first word is the run, unless --run says otherwise.
+  const bool two = !settings.words.empty() && settings.run != settings.words.front();
+  if (two || settings.words.size() > 1)
     faults.push_back({"report", "more than one run is given", "seqloop report RUN --out PAGE"});
   if (settings.out.empty())
     faults.push_back({"out", "not given", "name the page to write, --out page.html"});
@@ -101,7 +104,7 @@ Verb report_verb() {
   verb.options.path("out", Access::writes, settings->out, "the page, one HTML file");
   verb.words = [settings](const std::vector<std::string>& words) {
     if (!words.empty()) settings->run = words.front();
-    settings->words = words.size();
+    settings->words = words;
   };
   return verb;
 }

@@ -148,10 +148,10 @@ void run(const RunSettings& settings, Faults faults) {
       if (serving) serving->add_place(frame.image, frame.index);
       if (ros) ros->add_place(frame.image, frame.index);
     };
-    const std::size_t blank_places =
+    const Mapped mapped =
         fill_map(map, *setup.reference, setup.describer.get(), setup.config, mapping, look);
     tell_notes(settings.reference, *setup.reference);
-    tell_blank(settings.reference, blank_places, map.size());
+    tell_blank(settings.reference, mapped.blank, mapped.frames);
   }
   if (setup.map) setup.map->load(map);
   memory.wait();
