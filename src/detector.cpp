@@ -168,6 +168,7 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
 
 /// Of a frame that shows what the newest step does.
 FrameReport Detector::report_again() noexcept {
+  if (may_be_hidden()) lose_sight(false);
   const std::size_t before = pending_.answers().size();
   pending_.answer(*map_, steps_, steps_.frames() - 1, window_began_);
   FrameReport report = last_;
@@ -181,6 +182,14 @@ FrameReport Detector::report_again() noexcept {
   report.answers = told_.subspan(first, told_count_ - first);
   say_last(report, queries_.newest(), true);
   return report;
+}
+
+/// Whether the robot may drive on behind whatever stands before its camera: the newest frames, more
+/// than one, look alike, but not like their place, and not like the frames before them. One that
+/// has been carried away before stands where it was put down.
+bool Detector::may_be_hidden() const noexcept {
+  return !keyframes_.is_dense() && keyframes_.is_cut() && pending_.jumps() <= 0.0 &&
+         !pending_.shows_its_place(queries_.newest());
 }
 
 /// Whether a stop may be elsewhere than what was believed before it. Of a robot that was carried
@@ -352,11 +361,12 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   }
   if (config_.decision == Decision::probability) {
     if (readable) {
+      unseen_ = 0;
       report.work.sketches +=
           belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows},
                           pending_.chance_of_return(newest));
     } else {
-      belief_.pass(map_->order(), 1, 0);
+      lose_sight(true);
     }
   }
   report.gate = readable ? Gate::warming_up : Gate::frame_error;
@@ -394,6 +404,29 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   return report;
 }
 
+/// How many steps so many frames are that nothing is seen of.
+std::uint64_t Detector::steps_of(std::uint64_t frames) noexcept {
+  return told_.empty() ? frames : keyframes_.skip(frames);
+}
+
+/// The newest frame shows nothing: the robot may stand, or drive on. How far it has come is known
+/// less and less well, so that it is no more asked after a window of such frames, and behind two
+/// windows nothing is known.
+/// @param is_step whether it is a step of its own
+void Detector::lose_sight(bool is_step) noexcept {
+  const std::uint64_t steps = is_step ? steps_of(1) : 1;
+  unseen_ += steps;
+  const bool lost = is_step && steps > 0 && unseen_ == 2 * config_.sequence_length;
+  const bool moves = steps > 0 && unseen_ <= config_.sequence_length;
+  if (lost) {
+    belief_.restart();
+  } else if (moves) {
+    belief_.drift(*map_, is_step);
+  } else if (is_step) {
+    belief_.pass(map_->order(), 1, 0);
+  }
+}
+
 void Detector::skip(std::uint64_t frames) noexcept {
   if (frames == 0 || queries_.frames() == 0) return;
   const std::uint64_t most = config_.sequence_length + 1;
@@ -403,7 +436,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
     return;
   }
   pending_.forget_evidence();
-  const std::uint64_t steps = told_.empty() ? frames : keyframes_.skip(frames);
+  const std::uint64_t steps = steps_of(frames);
   steps_.skip(frames, steps);
   if (steps == 0) return;
   for (std::uint64_t step = 0; step < steps; ++step) {
@@ -436,7 +469,6 @@ void Detector::restart() noexcept {
 /// the frame before when there is nothing to take.
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
-    keyframes_.unread();
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     ++unread_;

@@ -94,10 +94,7 @@ std::pair<double, std::size_t> highest(std::span<double> values, std::size_t n) 
   }
 }
 
-/// Chances that a row goes on by 0, 1 or 2.
-using Moves = std::array<double, 3>;
-
-/// The same of a robot that goes on by so many rows a frame, 0 .. 2: between those of one that
+/// Chances of a robot that goes on by so many rows a frame, 0 .. 2: between those of one that
 /// stays, goes by one, and by two.
 Moves moves_at(double pace) {
   constexpr std::array<Moves, 3> of{{{0.92, 0.06, 0.02}, {0.06, 0.88, 0.06}, {0.02, 0.06, 0.92}}};
@@ -147,7 +144,10 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const double by_line = led_to && *led_to < view.rows ? where_it_leads * born : 0.0;
   const double each = (born - by_line) / static_cast<double>(view.seen->scanned().size());
   // In a drive's own map what is believed less than a row that is found anew will be found again.
-  move(view.map->order(), *scene, jumps, earlier_drives ? 0.0 : each);
+  std::array<Moves, most> moves;
+  std::ranges::transform(rows_.first(count_), moves.begin(),
+                         [&](const Hypothesis& at) { return moves_of(at, *scene, jumps); });
+  move(view.map->order(), moves, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
   const double left = leaving * scene->novelty;
@@ -171,25 +171,19 @@ void PlaceBelief::prefetch(const SceneView& view) noexcept {
   }
 }
 
-/// Whether a hypothesis goes on at its own pace: a robot may pass places at another one than it, or
-/// an earlier drive, did.
-bool PlaceBelief::goes_at_its_pace(const Hypothesis& at, double jumps) const noexcept {
-  return jumps <= jumps_often && (localises_ || at.pace < slow_pace || at.pace > fast_pace);
+/// A robot may pass places at another pace than it, or an earlier drive, did: there a hypothesis
+/// goes on at its own.
+Moves PlaceBelief::moves_of(const Hypothesis& at, const Scene& scene, double jumps) const noexcept {
+  const bool at_its_pace = scene.drives() && jumps <= jumps_often &&
+                           (localises_ || at.pace < slow_pace || at.pace > fast_pace);
+  return at_its_pace ? moves_at(at.pace) : scene.moves();
 }
 
 /// Moves the belief on by a frame: each row now comes from its likeliest predecessor.
+/// @param moves of each hypothesis
 /// @param least belief in a row that is not forgotten
-void PlaceBelief::move(const PlaceOrder& order, const Scene& scene, double jumps,
+void PlaceBelief::move(const PlaceOrder& order, std::span<const Moves> moves,
                        double least) noexcept {
-  std::array<Moves, most> moves;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const bool at_its_pace = scene.drives() && goes_at_its_pace(rows_[i], jumps);
-    if (at_its_pace) {
-      moves[i] = moves_at(rows_[i].pace);
-    } else {
-      std::ranges::copy(scene.moves(), moves[i].begin());
-    }
-  }
   moved_count_ = 0;
   ended_ = {};
   std::array<std::size_t, 3> next{};
@@ -378,10 +372,7 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   }
   std::swap(rows_, next_);
   sharpen(order, scene, std::span(gains).first(count_));
-  double sum = new_place_;
-  for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
-  for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
-  new_place_ /= sum;
+  normalise();
   const Shown shown = shown_best(*view.map, std::span(without_bounds).first(count_));
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
@@ -432,6 +423,14 @@ void PlaceBelief::sharpen(const PlaceOrder& order, const Scene& scene,
     result[i] = after > 0.0 ? sharp[i] * before / after : rows_[i].mass;
   }
   for (std::size_t i = 0; i < count_; ++i) rows_[i].mass = result[i];
+}
+
+/// All rows and "somewhere new" make 1.
+void PlaceBelief::normalise() noexcept {
+  double sum = new_place_;
+  for (const Hypothesis& at : rows_.first(count_)) sum += at.mass;
+  for (Hypothesis& at : rows_.first(count_)) at.mass /= sum;
+  new_place_ /= sum;
 }
 
 void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps) noexcept {
@@ -551,6 +550,34 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
       traces_.set(count_++, row + rows, static_cast<BeliefTraces::Index>(i), 0.0, unknown, false);
     }
   }
+}
+
+void PlaceBelief::drift(const PlaceMap& map, bool is_step) noexcept {
+  std::array<Moves, most> moves;
+  moves.fill(of_unseen_motion);
+  move(map.order(), moves, std::numeric_limits<double>::min());
+  hand_over(map);
+  if (is_step) {
+    expected_.reset();
+    first_frames_.repeat(1);
+    wrong_.take({});
+    traces_.next(0.0, 0.0);
+  }
+  count_ = moved_count_;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Hypothesis& at = next_[i];
+    take_on(map.order(), at, moved_[i], false);
+    at.past = Hypothesis{}.past;
+    if (is_step) {
+      at.told = 0.0;
+      at.step = unknown;
+    } else {
+      at.parent = rows_[moved_[i].parent].parent;
+    }
+    traces_.set(i, at.row, at.parent, at.told, at.step, false);
+  }
+  std::swap(rows_, next_);
+  normalise();
 }
 
 void PlaceBelief::removed(std::size_t row, bool forgotten) noexcept {

@@ -169,6 +169,9 @@ class Detector {
   void tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept;
   void tell(FrameReport& report, std::span<const Answer> answers) noexcept;
   void stand() noexcept;
+  [[nodiscard]] std::uint64_t steps_of(std::uint64_t frames) noexcept;
+  [[nodiscard]] bool may_be_hidden() const noexcept;
+  void lose_sight(bool is_step) noexcept;
   [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
@@ -201,6 +204,7 @@ class Detector {
   std::uint64_t skipped_ = 0;         // frames since the last that came
   bool newest_was_seen_ = false;      // the newest step is a frame that could be read
   std::uint64_t unread_ = 0;          // frames in a row, up to the newest
+  std::uint64_t unseen_ = 0;          // steps that these are
   FrameReport last_;                  // of that step
   std::optional<Answer> its_answer_;  // of that step, once it has been given
   std::span<Answer> told_;            // of frames, where not each is a step

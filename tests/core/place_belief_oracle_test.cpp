@@ -90,28 +90,7 @@ class NaiveBelief {
       const double least = 0.06 - 0.04 * off;
       return pace < 1.0 ? std::vector{other, same, least} : std::vector{least, same, other};
     };
-    std::map<std::size_t, Row> moved;
-    std::map<std::size_t, double> largest;
-    double ended = 0.0;  // beyond the last row, and no other visit is known
-    for (const auto& [row, old] : rows_) {
-      const std::vector<double> by = chances(old.pace);
-      for (std::size_t i = 0; i < by.size(); ++i) {
-        const double part = by[i] * old.mass;
-        if (row + i >= view.map->size()) {
-          ended += part;
-          continue;
-        }
-        Row& here = moved[row + i];
-        const double mass = here.mass + part;
-        // Of equals the one that moved least.
-        if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
-          largest[row + i] = part;
-          here = old;
-          if (w > 0.02) here.pace = pace_after(old, static_cast<double>(i));
-        }
-        here.mass = mass;
-      }
-    }
+    auto [moved, ended] = gone_on(view.map->size(), chances, w > 0.02);
     // 6.3, what comes
     const bool begins = weighed_++ < 20;
     const double coming = std::max(begins && earlier_drives_ ? 0.1 : 0.001, std::min(0.1, jumps_)) *
@@ -120,10 +99,7 @@ class NaiveBelief {
     if (!earlier_drives_) {
       std::erase_if(moved, [&](const auto& at) { return at.second.mass < born / n; });
     }
-    std::vector<std::pair<double, std::size_t>> order;
-    for (const auto& [row, at] : moved) order.emplace_back(-at.mass, row);
-    std::ranges::sort(order);
-    for (std::size_t i = 48; i < order.size(); ++i) moved.erase(order[i].second);
+    keep_48(moved);
     // Leave and come.
     double on = ended;
     for (auto& [row, at] : moved) {
@@ -211,6 +187,29 @@ class NaiveBelief {
     best = past;
   }
 
+  /// A frame that shows nothing.
+  /// @param is_step whether it is one of its own, or one with the newest
+  void drift(std::size_t rows, bool is_step) {
+    rows_ = gone_on(
+                rows,
+                [](double) {
+                  return std::vector{0.45, 0.40, 0.15};
+                },
+                false)
+                .first;
+    keep_48(rows_);
+    double sum = new_place;
+    for (auto& [row, at] : rows_) {
+      at.past = -10.0;
+      if (is_step) at.way.push_back(row);
+      at.way.back() = row;
+      sum += at.mass;
+    }
+    for (auto& [row, at] : rows_) at.mass /= sum;
+    new_place /= sum;
+    if (is_step) showed_.push_back({none, none});
+  }
+
   double new_place = 1.0;
   std::size_t likeliest = 0;
   double best = 0.0;  // on the likeliest row's way
@@ -219,6 +218,44 @@ class NaiveBelief {
 
  private:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  /// 6.3, step 1
+  /// @param chances by a row's pace @param paced whether that follows
+  /// @return and what has gone beyond the last row, where no other visit is known
+  [[nodiscard]] std::pair<std::map<std::size_t, Row>, double> gone_on(std::size_t rows,
+                                                                      const auto& chances,
+                                                                      bool paced) const {
+    std::map<std::size_t, Row> moved;
+    std::map<std::size_t, double> largest;
+    double ended = 0.0;
+    for (const auto& [row, old] : rows_) {
+      const std::vector<double> by = chances(old.pace);
+      for (std::size_t i = 0; i < by.size(); ++i) {
+        const double part = by[i] * old.mass;
+        if (row + i >= rows) {
+          ended += part;
+          continue;
+        }
+        Row& here = moved[row + i];
+        const double mass = here.mass + part;
+        // Of equals the one that moved least.
+        if (part > largest[row + i] || (part == largest[row + i] && part > 0.0)) {
+          largest[row + i] = part;
+          here = old;
+          if (paced) here.pace = pace_after(old, static_cast<double>(i));
+        }
+        here.mass = mass;
+      }
+    }
+    return {moved, ended};
+  }
+
+  static void keep_48(std::map<std::size_t, Row>& moved) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (const auto& [row, at] : moved) order.emplace_back(-at.mass, row);
+    std::ranges::sort(order);
+    for (std::size_t i = 48; i < order.size(); ++i) moved.erase(order[i].second);
+  }
 
   /// 6.3, step 3
   static double kept(double w) { return std::max(0.95, 1.0 - 0.22 * w); }
@@ -307,6 +344,10 @@ class NaiveBelief {
 /// What a map's places are, and whether the drive is added to them.
 enum class Map : std::uint8_t { to_localise_in, of_earlier_drives, of_the_same_drive };
 
+/// Frames of a query that show nothing: one that is a step, and one that is not.
+const std::vector<float> unreadable;
+const std::vector<float> hidden{0.0F};
+
 void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vectors& query,
                                Map kind = Map::to_localise_in, double jumps = 0.0,
                                std::uint64_t pattern = 5) {
@@ -320,6 +361,14 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
   std::size_t judged = 0;
   std::size_t traced = 0;
   for (const auto& descriptor : query) {
+    if (descriptor.size() != size) {
+      const bool is_step = descriptor == unreadable;
+      if (is_step) seen.queries.push_again();
+      belief.drift(seen.map, is_step);
+      naive.drift(seen.map.size(), is_step);
+      ASSERT_NEAR(belief.new_place(), naive.new_place, 1e-9);
+      continue;
+    }
     const SceneView view = seen.take(descriptor);
     static_cast<void>(belief.observe(view, jumps));
     // So that the best is now of one row, now of another, and a good deal is known of rows before
@@ -436,6 +485,26 @@ TEST(PlaceBeliefOracle, OnAWayThatIsLeftAndComeBackTo) {
         SCOPED_TRACE(std::to_string(away) + ", " + std::to_string(static_cast<int>(kind)) + ", " +
                      std::to_string(pattern));
         expect_like_the_naive_one(test::way(1, 200, 0.5F, 1, size), query, kind, 0.0, pattern);
+      }
+    }
+  }
+}
+
+TEST(PlaceBeliefOracle, WhereFramesShowNothing) {
+  for (const auto& nothing : {unreadable, hidden}) {
+    for (const std::size_t frames : {1U, 4U, 12U}) {
+      for (const Map kind : {Map::to_localise_in, Map::of_earlier_drives, Map::of_the_same_drive}) {
+        SCOPED_TRACE(std::to_string(nothing.size()) + ", " + std::to_string(frames) + ", " +
+                     std::to_string(static_cast<int>(kind)));
+        oracle::Vectors query = test::way(1, 200, 0.5F, 2, size);
+        for (const auto at : {60, 130}) {
+          if (nothing == unreadable) {
+            std::fill_n(query.begin() + at, frames, nothing);
+          } else {
+            query.insert(query.begin() + at, frames, nothing);
+          }
+        }
+        expect_like_the_naive_one(test::way(1, 200, 0.5F, 1, size), query, kind);
       }
     }
   }

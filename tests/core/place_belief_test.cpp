@@ -584,6 +584,79 @@ TEST(PlaceBelief, ACoveredLensSaysNothing) {
   EXPECT_EQ(said.answers.back().gate, Gate::match);
 }
 
+/// The view that somebody hides who stands before the camera, at so many frames: they look alike,
+/// and a little like what is behind.
+oracle::Vectors hidden(std::span<const std::vector<float>> view, std::uint32_t seed) {
+  const oracle::Vectors somebody = way(seed, 1, 1.0F, 1);
+  oracle::Vectors seen(view.begin(), view.end());
+  for (auto& descriptor : seen) {
+    for (std::size_t i = 0; i < descriptor.size(); ++i) {
+      descriptor[i] = 0.05F * descriptor[i] + somebody.front()[i];
+    }
+  }
+  return test::unit(seen);
+}
+
+/// Whatever the frames between show, those after them are where the robot has come by then, or
+/// where it has stood.
+TEST(PlaceBelief, ARobotThatSeesNothingStandsOrDrivesOn) {
+  constexpr std::uint32_t size_of_way = 200;
+  constexpr std::size_t at = 100;
+  constexpr float noise = 4.0F;
+  for (const std::size_t unseen : {5U, 12U, 20U}) {
+    for (const bool drives : {true, false}) {
+      for (const bool covered : {true, false}) {
+        SCOPED_TRACE(std::to_string(unseen) + (drives ? " drives" : " stands") +
+                     (covered ? ", covered" : ", hidden"));
+        std::size_t found = 0;
+        std::size_t seen = 0;
+        for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+          const oracle::Vectors map = way(seed, size_of_way, noise, 1);
+          const oracle::Vectors drive = way(seed, size_of_way, noise, 2);
+          oracle::Vectors query(drive.begin(), drive.begin() + at);
+          const oracle::Vectors nothing =
+              covered ? oracle::Vectors(unseen)
+                      : hidden(std::span(drive).subspan(at, unseen), seed + 90);
+          query.insert(query.end(), nothing.begin(), nothing.end());
+          const std::size_t goes_on = drives ? at + unseen : at;
+          query.insert(query.end(), drive.begin() + static_cast<std::ptrdiff_t>(goes_on),
+                       drive.end());
+          const std::size_t off = at + unseen - goes_on;
+          MatcherConfig config = settings(Use::localise);
+          config.standardisation.on = true;
+          config.keyframes = true;
+          for (const Answer& answer : drive_through(map, query, config).answers) {
+            if (answer.frame >= at && answer.frame < at + unseen) continue;
+            ++seen;
+            if (answer.gate != Gate::match) continue;
+            ++found;
+            const std::size_t is = answer.frame < at ? answer.frame : answer.frame - off;
+            EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(is), 5.0);
+          }
+        }
+        std::printf("%zu of %zu\n", found, seen);
+        EXPECT_GE(found, seen * 9 / 10);
+      }
+    }
+  }
+}
+
+TEST(PlaceBelief, NothingIsKnownBehindTwoWindowsOfNothing) {
+  const oracle::Vectors reference = way(9, 300, 0.5F, 1);
+  const oracle::Vectors query = way(9, 300, 0.5F, 2);
+  const MatcherConfig config = settings(Use::localise);
+  const auto new_place_after = [&](std::size_t unseen) {
+    PlaceMap map = map_of(reference, config);
+    Detector detector(config, map);
+    take(detector, std::span(query).first(100));
+    take(detector, oracle::Vectors(unseen));
+    const auto now = detector.step(query[100]).now;
+    return now ? now->new_place : 1.0F;
+  };
+  EXPECT_LT(new_place_after(39), 0.1F);
+  EXPECT_GT(new_place_after(40), 0.5F);
+}
+
 TEST(PlaceBelief, AGapIsAGapInTimeAndNotInEvidence) {
   const oracle::Vectors reference = way(10, 400, 0.5F, 1);
   const oracle::Vectors query = way(10, 400, 0.5F, 2);

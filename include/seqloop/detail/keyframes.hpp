@@ -76,10 +76,7 @@ class Keyframes {
   /// Whether it changed so from the keyframe before the newest one to that.
   [[nodiscard]] bool is_cut() const noexcept { return since_cut_ == 0; }
 
-  /// A frame could not be read: it counts as one that was.
-  void unread() noexcept { ++since_change_; }
-
-  /// Frames that never came count as frames that did.
+  /// Frames that never came, or cannot be read, count as frames that did.
   /// @return how many keyframes they are by what is usual, of several calls on end together
   [[nodiscard]] std::uint64_t skip(std::uint64_t frames) noexcept {
     since_change_ += frames;

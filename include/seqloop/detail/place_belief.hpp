@@ -57,6 +57,11 @@ class PlaceBelief {
   /// Frames went by unseen, and the robot moved on by this many rows in each.
   void pass(const PlaceOrder& order, std::uint64_t frames, std::size_t rows) noexcept;
 
+  /// A frame shows nothing, and the robot may stand or drive on meanwhile.
+  /// @param is_step whether it is a step of its own; otherwise it is one with the newest
+  /// Work: moves the rows. Allocates: never.
+  void drift(const PlaceMap& map, bool is_step) noexcept;
+
   /// A row went from the map: those behind it are counted one lower. @param forgotten as
   /// `PlaceMap::Taken` has it
   void removed(std::size_t row, bool forgotten) noexcept;
@@ -154,9 +159,10 @@ class PlaceBelief {
   };
 
   static void prefetch(const SceneView& view) noexcept;
-  [[nodiscard]] bool goes_at_its_pace(const Hypothesis& at, double jumps) const noexcept;
+  [[nodiscard]] Moves moves_of(const Hypothesis& at, const Scene& scene,
+                               double jumps) const noexcept;
   [[nodiscard]] double pace_after(const Hypothesis& at, double by) const noexcept;
-  void move(const PlaceOrder& order, const Scene& scene, double jumps, double least) noexcept;
+  void move(const PlaceOrder& order, std::span<const Moves> moves, double least) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
   void bear(std::size_t row, double mass) noexcept;
@@ -167,6 +173,7 @@ class PlaceBelief {
                                                      const Hypothesis& at) const noexcept;
   void weigh(const SceneView& view, const Scene& scene) noexcept;
   [[nodiscard]] Shown shown_best(const PlaceMap& map, std::span<const double> gains) const noexcept;
+  void normalise() noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;

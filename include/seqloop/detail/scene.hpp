@@ -25,6 +25,12 @@ struct SceneView {
   std::size_t rows;                ///< of the map that may be searched
 };
 
+/// Chances that a row goes on by 0, 1 or 2 with a frame.
+using Moves = std::array<double, 3>;
+
+/// Those where nothing tells whether the robot stands.
+inline constexpr Moves of_unseen_motion{0.45, 0.40, 0.15};
+
 /// How unlike the newest frame and the rows of the map usually are, as shares of differing bits,
 /// and what the frame tells that those before it did not.
 struct Scene {
@@ -41,10 +47,9 @@ struct Scene {
   [[nodiscard]] bool drives() const noexcept { return novelty > least_novelty; }
 
   /// Chances that rows go on by 0, 1 or 2 with this frame: a robot that stands may as well stay.
-  [[nodiscard]] std::span<const double, 3> moves() const noexcept {
-    static constexpr std::array moving{0.06, 0.88, 0.06};
-    static constexpr std::array standing{0.45, 0.40, 0.15};
-    return drives() ? moving : standing;
+  [[nodiscard]] const Moves& moves() const noexcept {
+    static constexpr Moves moving{0.06, 0.88, 0.06};
+    return drives() ? moving : of_unseen_motion;
   }
 
   /// How much more alike than rows usually are, in their deviations.
