@@ -410,17 +410,12 @@ std::uint64_t Detector::steps_of(std::uint64_t frames) noexcept {
 }
 
 /// The newest frame shows nothing: the robot may stand, or drive on. How far it has come is known
-/// less and less well, so that it is no more asked after a window of such frames, and behind two
-/// windows nothing is known.
+/// less and less well, so that it is no more asked behind a window of such frames.
 /// @param is_step whether it is a step of its own
 void Detector::lose_sight(bool is_step) noexcept {
   const std::uint64_t steps = is_step ? steps_of(1) : 1;
   unseen_ += steps;
-  const bool lost = is_step && steps > 0 && unseen_ == 2 * config_.sequence_length;
-  const bool moves = steps > 0 && unseen_ <= config_.sequence_length;
-  if (lost) {
-    belief_.restart();
-  } else if (moves) {
+  if (steps > 0 && unseen_ <= config_.sequence_length) {
     belief_.drift(*map_, is_step);
   } else if (is_step) {
     belief_.pass(map_->order(), 1, 0);

@@ -641,22 +641,6 @@ TEST(PlaceBelief, ARobotThatSeesNothingStandsOrDrivesOn) {
   }
 }
 
-TEST(PlaceBelief, NothingIsKnownBehindTwoWindowsOfNothing) {
-  const oracle::Vectors reference = way(9, 300, 0.5F, 1);
-  const oracle::Vectors query = way(9, 300, 0.5F, 2);
-  const MatcherConfig config = settings(Use::localise);
-  const auto new_place_after = [&](std::size_t unseen) {
-    PlaceMap map = map_of(reference, config);
-    Detector detector(config, map);
-    take(detector, std::span(query).first(100));
-    take(detector, oracle::Vectors(unseen));
-    const auto now = detector.step(query[100]).now;
-    return now ? now->new_place : 1.0F;
-  };
-  EXPECT_LT(new_place_after(39), 0.1F);
-  EXPECT_GT(new_place_after(40), 0.5F);
-}
-
 TEST(PlaceBelief, AGapIsAGapInTimeAndNotInEvidence) {
   const oracle::Vectors reference = way(10, 400, 0.5F, 1);
   const oracle::Vectors query = way(10, 400, 0.5F, 2);
