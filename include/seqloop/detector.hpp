@@ -204,7 +204,7 @@ class Detector {
   std::uint64_t skipped_ = 0;         // frames since the last that came
   bool newest_was_seen_ = false;      // the newest step is a frame that could be read
   std::uint64_t unread_ = 0;          // frames in a row, up to the newest
-  std::uint64_t unseen_ = 0;          // steps that these are
+  std::uint64_t unseen_ = 0;          // steps in a row that nothing was seen at
   FrameReport last_;                  // of that step
   std::optional<Answer> its_answer_;  // of that step, once it has been given
   std::span<Answer> told_;            // of frames, where not each is a step

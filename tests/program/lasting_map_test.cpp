@@ -269,7 +269,16 @@ TEST_F(LastingMaps, EachPlaceHasAThumbnailUnlessThatIsSwitchedOff) {
   EXPECT_GT(info("with.seqloop")["thumbnail_bytes"], 40 * 200);
   EXPECT_EQ(info("without.seqloop")["thumbnails"], 0);
   expect_done("map check with.seqloop");
-  expect_refused("run --source drive --reference with.seqloop",
+  expect_done("run --source drive --map with.seqloop --read-only --out map.jsonl");
+  expect_done("run --source drive --reference with.seqloop --out reference.jsonl");
+  const auto answers = [this](const std::string& name) {
+    std::vector<nlohmann::json> all;
+    for (const auto& line : lines(name)) all.push_back(line["answers"]);
+    return all;
+  };
+  EXPECT_EQ(answers("reference.jsonl"), answers("map.jsonl"));
+  EXPECT_EQ(answers("map.jsonl").size(), 40U);
+  expect_refused("run --source drive --reference with.seqloop --map without.seqloop",
                  "to localise in a map: --map with.seqloop --read-only");
   expect_done("describe --source drive --out drive.npy");
   expect_refused("match --query drive.npy --reference with.seqloop --out m.csv", "to localise in");

@@ -5,9 +5,11 @@
 #include <string_view>
 #include <utility>
 
+#include "program/process/database_file.hpp"
 #include "program/run/pictures.hpp"
 #include "program/verbs/all_verbs.hpp"
 #include "program/verbs/run.hpp"
+#include "seqloop/bags/bag.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -16,6 +18,14 @@ Pace parse_pace(std::string_view text) {
   if (text == "max") return Pace::max;
   if (text == "live") return Pace::live;
   throw std::invalid_argument("'" + std::string(text) + "' is neither live nor max");
+}
+
+/// A map that was saved is a reference, too: the drive is localised in it, and it stays as it is.
+void take_map_for_reference(RunSettings& settings) {
+  const bool is_map = is_database(settings.reference) && !bags::is_bag(settings.reference);
+  if (!is_map || !settings.map.file.empty()) return;
+  settings.map.file = std::exchange(settings.reference, {});
+  settings.map.read_only = true;
 }
 
 constexpr std::string_view tasks =
@@ -42,14 +52,17 @@ Verb run_verb() {
   Verb verb{"run",
             "Grab, describe, match and decide, frame by frame",
             {},
-            [settings](Faults faults) { run(*settings, std::move(faults)); },
+            [settings](Faults faults) {
+              take_map_for_reference(*settings);
+              run(*settings, std::move(faults));
+            },
             std::string(tasks)};
   verb.options.section("Task");
   verb.options.path("source", Access::reads, settings->source,
                     "camera (/dev/video0), topic of ROS 2 (ros:/camera), image folder, video file, "
                     "bag (.mcap, .db3, its folder) or descriptors (.npy)");
   verb.options.path("reference", Access::reads, settings->reference,
-                    "drive to localise in [close loops within the source]");
+                    "drive, or saved map, to localise in [close loops within the source]");
   verb.options.path("out", Access::writes, settings->out,
                     "one JSON object a frame [standard output]");
   verb.options.path("summary", Access::writes, settings->summary,
