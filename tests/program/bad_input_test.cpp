@@ -275,6 +275,10 @@ TEST_F(BadInput, CommandLines) {
   expect_refused("match --config c.toml --config c.toml",
                  {"config: given more than once", "query"});
   expect_refused("match --hepl", {"did you mean --help"});
+  folder_.write("no.seqloop", "places");
+  for (const char* verb : {"run --source none", "match --query none"}) {
+    expect_refused(std::string(verb) + " --map no.seqloop --out m", {"none", "no SeqLoop map"});
+  }
   folder_.write("a.jsonl", "{}\n");
   folder_.write("b.jsonl", "{}\n");
   for (const char* two : {"a.jsonl b.jsonl", "--run a.jsonl b.jsonl", "a.jsonl --run b.jsonl"}) {

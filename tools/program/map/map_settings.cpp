@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "program/map/map_settings.hpp"
 
+#include <unistd.h>
+
 #include <stdexcept>
 
 #include "program/options/verb.hpp"
+#include "program/process/database_file.hpp"
 #include "program/process/utf8.hpp"
 
 namespace seqloop::program {
@@ -52,13 +55,22 @@ void check(const MapSettings& settings, bool reference, Faults& faults) {
                  "there is no map", "--map FILE");
     return;
   }
-  // It is opened once the form of the drive's places is known.
+  // It is opened once the form of the drive's places is known: what can be seen before that is told
+  // with all other faults.
   std::error_code error;
+  const bool is_other = std::filesystem::is_regular_file(settings.file, error) &&
+                        std::filesystem::file_size(settings.file, error) > 0 &&
+                        ::access(settings.file.c_str(), R_OK) == 0 && !is_database(settings.file);
   const std::filesystem::path around =
       std::filesystem::absolute(settings.file, error).parent_path();
   if (settings.read_only && !std::filesystem::exists(settings.file, error) && !error) {
     faults.push_back({settings.file.string(), "there is no such map",
                       "name a map, or make one with `seqloop run --map`"});
+  } else if (is_other) {
+    faults.push_back(
+        {settings.file.string(),
+         "no SeqLoop map: it is not even an SQLite database, or its first page is damaged",
+         "name a map; if it was one, `seqloop map recover` finds what is left of it"});
   } else if (!settings.read_only && !std::filesystem::is_directory(around, error)) {
     faults.push_back({settings.file.string(), "its folder does not exist",
                       "create " + around.string() + " first"});
