@@ -410,7 +410,7 @@ std::uint64_t Detector::steps_of(std::uint64_t frames) noexcept {
 }
 
 /// The newest frame shows nothing: the robot may stand, or drive on. How far it has come is known
-/// less and less well, so that it is no more asked behind a window of such frames.
+/// less and less well, so after a window of such frames the rows stay.
 /// @param is_step whether it is a step of its own
 void Detector::lose_sight(bool is_step) noexcept {
   const std::uint64_t steps = is_step ? steps_of(1) : 1;

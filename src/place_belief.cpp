@@ -376,10 +376,9 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const Shown shown = shown_best(*view.map, std::span(without_bounds).first(count_));
   traces_.next(w, scene.change);
   for (std::size_t i = 0; i < count_; ++i) {
-    const Hypothesis& at = rows_[i];
-    const bool is_shown =
-        without_bounds[i] >= shown.least && view.map->same_place(at.row, shown.row);
-    traces_.set(i, at.row, at.parent, at.told, at.step, is_shown);
+    Hypothesis& at = rows_[i];
+    at.shown = without_bounds[i] >= shown.least && view.map->same_place(at.row, shown.row);
+    traces_.set(i, at.row, at.parent, at.told, at.step, at.shown);
   }
 }
 
@@ -494,7 +493,8 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   at.past = top.past;
   at.age = std::max(at.age, top.age);
   const auto index = static_cast<std::size_t>(&at - rows_.data());
-  traces_.set_parent(index, top.parent);
+  at.parent = top.parent;
+  traces_.set_parent(index, at.parent);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the
@@ -552,11 +552,23 @@ void PlaceBelief::pass(const PlaceOrder& order, std::uint64_t frames, std::size_
   }
 }
 
+/// Moves on to the last row of the session at most: beyond it something would have to be seen.
+Moves PlaceBelief::unseen_moves_of(const PlaceOrder& order, const Hypothesis& at) noexcept {
+  const std::size_t left = order.around(at.row).last - 1 - at.row;
+  Moves moves = of_unseen_motion;
+  for (std::size_t by = moves.size() - 1; by > left; --by) {
+    moves[left] += std::exchange(moves[by], 0.0);
+  }
+  return moves;
+}
+
 void PlaceBelief::drift(const PlaceMap& map, bool is_step) noexcept {
   std::array<Moves, most> moves;
-  moves.fill(of_unseen_motion);
-  move(map.order(), moves, std::numeric_limits<double>::min());
-  hand_over(map);
+  std::ranges::transform(rows_.first(count_), moves.begin(),
+                         [&](const Hypothesis& at) { return unseen_moves_of(map.order(), at); });
+  // What is left has come from somewhere.
+  constexpr double any = std::numeric_limits<double>::min();
+  move(map.order(), moves, any);
   if (is_step) {
     expected_.reset();
     first_frames_.repeat(1);
@@ -571,10 +583,11 @@ void PlaceBelief::drift(const PlaceMap& map, bool is_step) noexcept {
     if (is_step) {
       at.told = 0.0;
       at.step = unknown;
+      at.shown = false;
     } else {
       at.parent = rows_[moved_[i].parent].parent;
     }
-    traces_.set(i, at.row, at.parent, at.told, at.step, false);
+    traces_.set(i, at.row, at.parent, at.told, at.step, at.shown);
   }
   std::swap(rows_, next_);
   normalise();

@@ -74,11 +74,12 @@ class Detector {
   /// ds - ds/2 before this one.
   /// @param descriptor [D] unit L2 (squares that add up to .99 .. 1.01), or finite where the
   ///   difference is mean absolute. If it is empty, of another size, neither of these, or blank
-  ///   where `blank_is_unreadable`, the frame could not be read: it counts as one at which the
-  ///   scene stood still, and its answer is `frame_error`; by uniqueness, that of the centre frame
-  ///   is.
+  ///   where `blank_is_unreadable`, the frame could not be read: for sequences it counts as
+  ///   one at which the scene stood still, and its answer is `frame_error`; by uniqueness, that of
+  ///   the centre frame is.
   /// @note Where sequences are made of keyframes (`has_keyframes`), a frame that is none becomes no
-  ///   place, moves nothing, and is answered as the keyframe before it.
+  ///   place, moves nothing, unless the robot may drive on unseen, and is answered as the keyframe
+  ///   before it.
   /// Work: at most `most_work`. Allocates: never.
   [[nodiscard]] FrameReport step(std::span<const float> descriptor) noexcept;
 

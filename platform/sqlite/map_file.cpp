@@ -250,7 +250,12 @@ MapFile MapFile::read_only(const fs::path& path) {
       return begin(nullptr);
     } catch (const DatabaseError& refused) {
       if (refused.is_half_written()) {
-        roll_back(path);
+        try {
+          roll_back(path);
+        } catch (const DatabaseError& again) {
+          if (again.primary() == SQLITE_CORRUPT) throw;
+          throw refused;  // the file, its journal or their folder may not be written
+        }
         return begin(nullptr);
       }
       const fs::path folder = fs::absolute(path).parent_path();

@@ -79,7 +79,7 @@ class NaiveBelief {
       w = change * gone;
     }
     // 6.3, move
-    const auto chances = [&](double pace) -> std::vector<double> {
+    const auto chances = [&](std::size_t, double pace) -> std::vector<double> {
       if (w <= 0.02) return {0.45, 0.40, 0.15};
       const bool near_one = pace >= 0.65 && pace <= 1.35;
       if (jumps_ > 0.01 || (!localises_ && near_one)) return {0.06, 0.88, 0.06};
@@ -190,13 +190,12 @@ class NaiveBelief {
   /// A frame that shows nothing.
   /// @param is_step whether it is one of its own, or one with the newest
   void drift(std::size_t rows, bool is_step) {
-    rows_ = gone_on(
-                rows,
-                [](double) {
-                  return std::vector{0.45, 0.40, 0.15};
-                },
-                false)
-                .first;
+    const auto chances = [rows](std::size_t row, double) -> std::vector<double> {
+      if (row + 1 == rows) return {1.0};
+      if (row + 2 == rows) return {0.45, 0.55};
+      return {0.45, 0.40, 0.15};
+    };
+    rows_ = gone_on(rows, chances, false).first;
     keep_48(rows_);
     double sum = new_place;
     for (auto& [row, at] : rows_) {
@@ -220,7 +219,7 @@ class NaiveBelief {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
   /// 6.3, step 1
-  /// @param chances by a row's pace @param paced whether that follows
+  /// @param chances by a row and its pace @param paced whether that follows
   /// @return and what has gone beyond the last row, where no other visit is known
   [[nodiscard]] std::pair<std::map<std::size_t, Row>, double> gone_on(std::size_t rows,
                                                                       const auto& chances,
@@ -229,7 +228,7 @@ class NaiveBelief {
     std::map<std::size_t, double> largest;
     double ended = 0.0;
     for (const auto& [row, old] : rows_) {
-      const std::vector<double> by = chances(old.pace);
+      const std::vector<double> by = chances(row, old.pace);
       for (std::size_t i = 0; i < by.size(); ++i) {
         const double part = by[i] * old.mass;
         if (row + i >= rows) {
@@ -497,7 +496,7 @@ TEST(PlaceBeliefOracle, WhereFramesShowNothing) {
         SCOPED_TRACE(std::to_string(nothing.size()) + ", " + std::to_string(frames) + ", " +
                      std::to_string(static_cast<int>(kind)));
         oracle::Vectors query = test::way(1, 200, 0.5F, 2, size);
-        for (const auto at : {60, 130}) {
+        for (const auto at : {60, 130, 187}) {
           if (nothing == unreadable) {
             std::fill_n(query.begin() + at, frames, nothing);
           } else {

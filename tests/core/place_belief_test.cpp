@@ -630,7 +630,7 @@ TEST(PlaceBelief, ARobotThatSeesNothingStandsOrDrivesOn) {
             ++seen;
             if (answer.gate != Gate::match) continue;
             ++found;
-            const std::size_t is = answer.frame < at ? answer.frame : answer.frame - off;
+            const std::uint64_t is = answer.frame < at ? answer.frame : answer.frame - off;
             EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(is), 5.0);
           }
         }
@@ -638,6 +638,26 @@ TEST(PlaceBelief, ARobotThatSeesNothingStandsOrDrivesOn) {
         EXPECT_GE(found, seen * 9 / 10);
       }
     }
+  }
+}
+
+TEST(PlaceBelief, ARobotThatStandsBehindALongCoverIsWhereItWas) {
+  const oracle::Vectors reference = way(9, 120, 0.5F, 1);
+  const oracle::Vectors query = way(9, 120, 0.5F, 2);
+  const MatcherConfig config = settings(Use::localise);
+  for (const std::size_t at : {60U, 119U}) {
+    PlaceMap map = map_of(reference, config);
+    Detector detector(config, map);
+    take(detector, std::span(query).first(at + 1));
+    take(detector, oracle::Vectors(40));
+    const auto now = detector.step(query[at]).now;
+    ASSERT_TRUE(now);
+    EXPECT_LT(now->new_place, 0.1F) << at;
+    const std::size_t goes_to = std::min(at + 15, query.size() - 1);
+    take(detector, std::span(query).first(goes_to).subspan(at + 1 < query.size() ? at + 1 : at));
+    const auto later = detector.step(query[goes_to]).now;
+    ASSERT_TRUE(later);
+    EXPECT_NEAR(static_cast<double>(later->place), static_cast<double>(goes_to), 5.0);
   }
 }
 

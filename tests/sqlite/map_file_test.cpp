@@ -910,7 +910,7 @@ TEST_F(Map, WhoseWriterWasKilledWhileItRewroteTheFileIsReadAsItWas) {
   make();
   const std::string before = content();
   const fs::path killed = file("killed.seqloop");
-  leave_half_written(file(), killed);
+  ASSERT_NO_FATAL_FAILURE(leave_half_written(file(), killed));
   const auto journal = killed.string() + "-journal";
   ASSERT_GT(fs::file_size(journal), 512U) << "pages that are to be put back";
   EXPECT_EQ(content(MapFile::read_only(killed)), before);
@@ -920,8 +920,7 @@ TEST_F(Map, WhoseWriterWasKilledWhileItRewroteTheFileIsReadAsItWas) {
 TEST_F(Map, WhoseWriterWasKilledSaysSoWhereItMayNotBeWritten) {
   make();
   const fs::path killed = file("killed.seqloop");
-  leave_half_written(file(), killed);
-  fs::permissions(killed, fs::perms(0444));
+  ASSERT_NO_FATAL_FAILURE(leave_half_written(file(), killed));
   fs::permissions(folder_.path(), fs::perms(0555));
   {
     const Other other([&killed](const auto& done) {

@@ -153,7 +153,7 @@ class Keyframes {
   bool is_dense_ = false;
   std::uint64_t changes_ = 0;
   std::uint64_t since_change_ = 0;  // frames
-  double unseen_ = 0.0;             // part of a keyframe that frames were which never came
+  double unseen_ = 0.0;             // part of a keyframe that unseen frames were
   Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes

@@ -59,7 +59,7 @@ class PlaceBelief {
 
   /// A frame shows nothing, and the robot may stand or drive on meanwhile.
   /// @param is_step whether it is a step of its own; otherwise it is one with the newest
-  /// Work: moves the rows. Allocates: never.
+  /// Work: three moves of each row that is weighed. Allocates: never.
   void drift(const PlaceMap& map, bool is_step) noexcept;
 
   /// A row went from the map: those behind it are counted one lower. @param forgotten as
@@ -134,6 +134,7 @@ class PlaceBelief {
     double age = 0.0;       // novel frames
     double doubt = 0.0;     // as `Evidence` has it
     double pace = 1.0;      // decaying mean of the rows that it went on by, 0 .. 2
+    bool shown = false;     // the newest frame by itself shows the place
     BeliefTraces::Index parent = BeliefTraces::none;
   };
 
@@ -162,6 +163,8 @@ class PlaceBelief {
   [[nodiscard]] Moves moves_of(const Hypothesis& at, const Scene& scene,
                                double jumps) const noexcept;
   [[nodiscard]] double pace_after(const Hypothesis& at, double by) const noexcept;
+  [[nodiscard]] static Moves unseen_moves_of(const PlaceOrder& order,
+                                             const Hypothesis& at) noexcept;
   void move(const PlaceOrder& order, std::span<const Moves> moves, double least) noexcept;
   void keep_likeliest() noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;

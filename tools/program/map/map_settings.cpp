@@ -80,7 +80,7 @@ void check(const MapSettings& settings, bool reference, Faults& faults) {
   }
   if (settings.read_only && !settings.session.empty()) {
     faults.push_back({"session", "nothing is added to a map that is only read",
-                      "leave --session or --read-only out"});
+                      "leave --session or --read-only out, and name the map by --map"});
   }
   check_name(faults, "session", settings.session);
   if (!(settings.save_every_s > 0.0 && settings.save_every_s <= 3600.0)) {

@@ -32,7 +32,8 @@ constexpr std::string_view tasks =
     R"(Tasks, and what is taken by default:
   close loops       --source DRIVE                  room for as many places as DRIVE has frames; the
                                                     newest 20 frames are no places (--exclude)
-  localise          --source DRIVE --reference MAP  a place for each frame of MAP
+  localise          --source DRIVE --reference MAP  a place for each frame of MAP, a drive; or the
+                                                    places of a map that was saved
   a map that lasts  --source DRIVE --map FILE       both: in all that FILE has, and in DRIVE, which
                                                     is added to it while it runs
   run on a camera   --source /dev/video0            room for 20000 places; the cheapest mode of 10

@@ -141,7 +141,10 @@ class SaveError : public std::runtime_error {
 /// it. Open a file once in a process. Not for several threads at once. Allocates freely.
 class MapFile {
  public:
-  /// Opens a map to read. Throws SetupError: no such file, no map, of a newer version, damaged.
+  /// Opens a map to read. Where its writer was killed while it rewrote the file, the journal beside
+  /// that makes it what it was before; nothing else is written.
+  /// Throws SetupError: no such file, no map, of a newer version, damaged, or it would have to be
+  /// made what it was and must not be written.
   [[nodiscard]] static MapFile read_only(const std::filesystem::path& path);
 
   /// Opens a map to write; a file that is missing or empty becomes one, and one that holds
