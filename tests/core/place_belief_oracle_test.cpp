@@ -90,7 +90,8 @@ class NaiveBelief {
       const double least = 0.06 - 0.04 * off;
       return pace < 1.0 ? std::vector{other, same, least} : std::vector{least, same, other};
     };
-    auto [moved, ended] = gone_on(view.map->size(), chances, w > 0.02);
+    std::map<std::size_t, Row> moved;
+    const double ended = gone_on(view.map->size(), chances, w > 0.02, moved);
     // 6.3, what comes
     const bool begins = weighed_++ < 20;
     const double coming = std::max(begins && earlier_drives_ ? 0.1 : 0.001, std::min(0.1, jumps_)) *
@@ -195,7 +196,9 @@ class NaiveBelief {
       if (row + 2 == rows) return {0.45, 0.55};
       return {0.45, 0.40, 0.15};
     };
-    rows_ = gone_on(rows, chances, false).first;
+    std::map<std::size_t, Row> moved;
+    gone_on(rows, chances, false, moved);
+    rows_ = moved;
     keep_48(rows_);
     double sum = new_place;
     for (auto& [row, at] : rows_) {
@@ -219,12 +222,10 @@ class NaiveBelief {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
   /// 6.3, step 1
-  /// @param chances by a row and its pace @param paced whether that follows
-  /// @return and what has gone beyond the last row, where no other visit is known
-  [[nodiscard]] std::pair<std::map<std::size_t, Row>, double> gone_on(std::size_t rows,
-                                                                      const auto& chances,
-                                                                      bool paced) const {
-    std::map<std::size_t, Row> moved;
+  /// @param chances by a row and its pace @param paced whether that follows @param moved filled
+  /// @return what has gone beyond the last row, where no other visit is known
+  double gone_on(std::size_t rows, const auto& chances, bool paced,
+                 std::map<std::size_t, Row>& moved) const {
     std::map<std::size_t, double> largest;
     double ended = 0.0;
     for (const auto& [row, old] : rows_) {
@@ -246,7 +247,7 @@ class NaiveBelief {
         here.mass = mass;
       }
     }
-    return {moved, ended};
+    return ended;
   }
 
   static void keep_48(std::map<std::size_t, Row>& moved) {
