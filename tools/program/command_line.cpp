@@ -14,7 +14,6 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -95,6 +94,16 @@ std::string footer(const Verb& verb, bool show_all) {
   return text;
 }
 
+/// A flag with a value; one that is given more than once is told later, with all other faults.
+CLI::Option* add_value(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                       const std::string& help, ValueKind kind, bool may_be_bare) {
+  return app.add_option("--" + name, values, help)
+      ->type_name(value_name(kind))
+      ->expected(may_be_bare ? 0 : 1, 1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+}
+
 /// @param show_all flags that few need are shown, too
 void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
   CLI::App* sub = app.add_subcommand(verb.name, verb.help);
@@ -107,20 +116,14 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
         option.kind == ValueKind::flag
             ? sub->add_flag_callback(
                   "--" + option.name, [&into = values] { into = {"true"}; }, in_lines(option.help))
-            : sub->add_option("--" + option.name, values, in_lines(option.help))
-                  ->type_name(value_name(option.kind))
-                  ->expected(option.may_be_bare ? 0 : 1, 1)
-                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-                  ->allow_extra_args(false);
+            : add_value(*sub, option.name, values, in_lines(option.help), option.kind,
+                        option.may_be_bare);
     // No name: CLI11 does not show it.
     flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }
   const std::string general = "General";
-  sub->add_option("--config", given.config_files, "settings from a TOML file; flags win over it")
-      ->type_name(value_name(ValueKind::text))
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false)
+  add_value(*sub, "config", given.config_files, "settings from a TOML file; flags win over it",
+            ValueKind::text, false)
       ->group(general);
   sub->set_help_flag("-h,--help", "print the flags that are used most")->group(general);
   sub->set_help_all_flag("--help-all", "print all flags")->group(general);
