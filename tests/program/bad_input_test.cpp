@@ -297,6 +297,8 @@ TEST_F(BadInput, EmptyValues) {
   for (const char* name : {"reference", "map", "out", "summary", "pictures", "out-bag", "odometry",
                            "session", "topic", "method", "config"}) {
     refused("run --source good.npy --" + std::string(name) + " ''", name);
+    // What follows is no value of it.
+    refused("run --source good.npy --" + std::string(name) + "= --paper", name);
   }
   refused("match --query good.npy --out ''", "out");
   refused("eval --matches '' --truth identity", "matches");

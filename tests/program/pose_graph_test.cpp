@@ -9,6 +9,8 @@
 
 #include "bags/bag_bytes.hpp"
 #include "expect_setup_error.hpp"
+#include "program/run/closure.hpp"
+#include "program/run/frame_times.hpp"
 #include "seqloop/bags/odometry.hpp"
 #include "temporary_folder.hpp"
 
@@ -205,6 +207,7 @@ TEST(PoseGraph, VerticesOdometryAndLoops) {
   graph.add(answers);
   EXPECT_EQ(graph.notes(),
             (std::vector<std::string>{"pose graph: 9 poses, 2 loops",
+                                      "1 loop is left out of it for lack of a pose",
                                       "no pose: 1 frame outside of the odometry's times"}));
   Attempts attempts;
   graph.commit(attempts);
@@ -235,6 +238,37 @@ TEST(PoseGraph, VerticesOdometryAndLoops) {
       loops[1].starts_with("EDGE_SE3:QUAT 3 8 0 0 0 0 0 0 1 0.0078125 0 0 0 0 0 0.0078125 "))
       << "half as probable: " << loops[1];
   EXPECT_TRUE(test::says(test::read_all(trajectory), "\n102.000000000 2 0 0 0 0 0 1\n"));
+}
+
+// Frames 3 to 8 never came. The drive's first place has the number 100.
+TEST(LoopClosures, SayWhenTheirPlaceWasSeen) {
+  FrameTimes times;
+  for (const std::uint64_t frame : {0U, 1U, 2U, 9U, 10U}) {
+    times.add({frame, 0.5 * static_cast<double>(frame), 100 + frame});
+  }
+  const StampAt stamp = [](double time_s) { return static_cast<std::int64_t>(1000.0 * time_s); };
+  const auto seen = [&](std::uint64_t place) {
+    return closure_of(loop(10, place, 1.0F), times, stamp, "today").match_stamp_ns;
+  };
+  EXPECT_EQ(closure_of(loop(10, 101, 1.0F), times, stamp, "today").stamp_ns, 5000);
+  EXPECT_EQ(seen(101), 500);
+  EXPECT_EQ(seen(109), 4500);
+  EXPECT_EQ(seen(104), 0) << "it never came";
+  EXPECT_EQ(seen(99), 0) << "of another session";
+  EXPECT_EQ(seen(10), 0) << "likewise, though the drive has such a frame";
+
+  const auto nearest = [&](std::uint64_t place) {
+    const FrameTimes::Entry* const entry = times.nearest(place);
+    return entry == nullptr ? -1 : static_cast<int>(entry->frame);
+  };
+  EXPECT_EQ(nearest(102), 2);
+  EXPECT_EQ(nearest(104), 2);
+  EXPECT_EQ(nearest(107), 9);
+  EXPECT_EQ(nearest(99), -1);
+  EXPECT_EQ(nearest(111), -1);
+  FrameTimes localising;
+  localising.add({0, 0.0, std::nullopt});
+  EXPECT_EQ(localising.nearest(0), nullptr) << "places are another drive's";
 }
 
 TEST(PoseGraph, WithoutAnyPoseNothingIsWritten) {

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -190,8 +191,26 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
   return faults;
 }
 
+/// What is behind `--flag=` is its value, also where that is nothing: CLI11 would take the next word.
+/// @param valued names of the flags that have one
+std::vector<std::string> split_empty_values(std::span<char* const> words,
+                                            const std::set<std::string>& valued) {
+  std::vector<std::string> split;
+  for (const std::string word : words) {
+    if (word.starts_with("--") && word.ends_with('=') &&
+        valued.contains(word.substr(2, word.size() - 3))) {
+      split.push_back(word.substr(0, word.size() - 1));
+      split.emplace_back();
+    } else {
+      split.push_back(word);
+    }
+  }
+  return split;
+}
+
 int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   std::vector<std::string> all_names;
+  std::set<std::string> valued{"config"};
   std::vector<Given> given(verbs.size());
   CLI::App app("Visual loop closure in fixed memory and bounded time", "seqloop");
   app.set_version_flag("--version", version_line());
@@ -207,7 +226,10 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   const bool show_all = asked("--help-all") || !(asked("-h") || asked("--help"));
   for (std::size_t i = 0; i < verbs.size(); ++i) {
     add_to(app, verbs[i], given[i], show_all);
-    for (const Option& option : verbs[i].options.options()) all_names.push_back(option.name);
+    for (const Option& option : verbs[i].options.options()) {
+      all_names.push_back(option.name);
+      if (option.kind != ValueKind::flag) valued.insert(option.name);
+    }
   }
   if (const std::string_view first = argc > 1 ? argv[1] : "-"; !first.starts_with('-')) {
     std::vector<std::string> names;
@@ -221,8 +243,11 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   }
   char** const end = std::find(argv, argv + argc, std::string_view("--"));
   const std::vector<std::string> behind(std::min(end + 1, argv + argc), argv + argc);
+  std::vector<std::string> words =
+      split_empty_values(std::span(argv, end).subspan(argc > 0 ? 1 : 0), valued);
+  std::ranges::reverse(words);  // as CLI11 wants them
   try {
-    app.parse(static_cast<int>(end - argv), argv);
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     say("command line: {}; see seqloop --help", error.what());

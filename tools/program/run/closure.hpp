@@ -18,19 +18,17 @@ namespace seqloop::program {
 
 /// An answer that closes a loop, as ROS 2 is told it.
 /// @param times of the drive's frames
-/// @param own_places whether places are frames of the drive itself
 /// @param session of the place; empty where there is no map that lasts
 [[nodiscard]] inline ros::LoopClosure closure_of(const Answer& answer, const FrameTimes& times,
-                                                 const StampAt& stamp_ns, bool own_places,
+                                                 const StampAt& stamp_ns,
                                                  std::string_view session) noexcept {
-  const auto stamp = [&](std::uint64_t frame) {
-    const std::optional<double> time_s = times.at(frame);
-    return time_s ? stamp_ns(*time_s) : 0;
-  };
-  return {.stamp_ns = stamp(answer.frame),
-          .match_stamp_ns = own_places ? stamp(answer.match->frame()) : 0,
+  const std::uint64_t place = answer.match->frame();
+  const std::optional<double> taken_s = times.at(answer.frame);
+  const FrameTimes::Entry* const seen = times.nearest(place);
+  return {.stamp_ns = taken_s ? stamp_ns(*taken_s) : 0,
+          .match_stamp_ns = seen != nullptr && seen->place == place ? stamp_ns(seen->time_s) : 0,
           .frame = answer.frame,
-          .match = answer.match->frame(),
+          .match = place,
           .session = session,
           .robot = {},
           .probability = static_cast<double>(answer.probability),
@@ -42,7 +40,8 @@ namespace seqloop::program {
 /// The same of a place of another robot.
 [[nodiscard]] inline ros::LoopClosure closure_of(const OtherLoop& loop, const FrameTimes& times,
                                                  const StampAt& stamp_ns) noexcept {
-  ros::LoopClosure closure = closure_of(loop.answer, times, stamp_ns, false, loop.session.view());
+  ros::LoopClosure closure = closure_of(loop.answer, times, stamp_ns, loop.session.view());
+  closure.match_stamp_ns = 0;  // the number is none of this robot's
   closure.robot = loop.robot.view();
   return closure;
 }

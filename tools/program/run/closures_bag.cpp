@@ -10,12 +10,12 @@ ClosuresBag::ClosuresBag(const std::filesystem::path& path)
       bag_([this](std::span<const std::uint8_t> bytes) { out_.write(std::as_bytes(bytes)); }) {}
 
 void ClosuresBag::add(std::span<const Answer> answers, const FrameTimes& times,
-                      const StampAt& stamp_ns, bool own_places, const LastingMap* map) {
+                      const StampAt& stamp_ns, const LastingMap* map) {
   for (const Answer& answer : answers) {
     if (!closes_loop(answer)) continue;
     const std::string_view session =
         map == nullptr ? std::string_view() : map->where(answer.match->place).session;
-    bag_.add(closure_of(answer, times, stamp_ns, own_places, session), stamp_ns(times.newest_s()));
+    bag_.add(closure_of(answer, times, stamp_ns, session), stamp_ns(times.newest_s()));
   }
 }
 

@@ -20,10 +20,9 @@ class ClosuresBag {
   explicit ClosuresBag(const std::filesystem::path& path);
 
   /// Adds those that are accepted. @param times of the drive's frames
-  /// @param own_places whether places are frames of the drive itself
   /// @param map that places are of; null: none that lasts. Throws files::IoError.
   void add(std::span<const Answer> answers, const FrameTimes& times, const StampAt& stamp_ns,
-           bool own_places, const LastingMap* map);
+           const LastingMap* map);
 
   void add(std::span<const OtherLoop> loops, const FrameTimes& times, const StampAt& stamp_ns);
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace seqloop::program {
@@ -15,31 +15,44 @@ namespace seqloop::program {
 ///   known any more. Of a topic, once a frame has come; then any thread may ask
 using StampAt = std::function<std::int64_t(double time_s)>;
 
-/// When each frame of a drive was taken, by its number. 16 bytes a frame.
+/// When each frame of a drive was taken, by its number and by that of its place. 40 bytes a frame.
 class FrameTimes {
  public:
-  /// @param frame higher than all before   @param time_s of the drive's own clock
-  void add(std::uint64_t frame, double time_s) { times_.emplace_back(frame, time_s); }
+  struct Entry {
+    std::uint64_t frame;
+    double time_s;                       ///< of the drive's own clock
+    std::optional<std::uint64_t> place;  ///< the number that it has as a place, or would have
+  };
+
+  /// @param entry its numbers are higher than all before; all have a place, or none has
+  void add(const Entry& entry) { times_.push_back(entry); }
 
   /// Of the newest frame; 0 before the first.
   [[nodiscard]] double newest_s() const noexcept {
-    return times_.empty() ? 0.0 : times_.back().second;
+    return times_.empty() ? 0.0 : times_.back().time_s;
   }
 
-  /// All of them: frame, time.
-  [[nodiscard]] const std::vector<std::pair<std::uint64_t, double>>& all() const noexcept {
-    return times_;
-  }
+  [[nodiscard]] const std::vector<Entry>& all() const noexcept { return times_; }
 
   /// @return nothing for a frame that never came
   [[nodiscard]] std::optional<double> at(std::uint64_t frame) const noexcept {
-    const auto found = std::ranges::lower_bound(times_, frame, {}, &Entry::first);
-    if (found == times_.end() || found->first != frame) return std::nullopt;
-    return found->second;
+    const auto found = std::ranges::lower_bound(times_, frame, {}, &Entry::frame);
+    if (found == times_.end() || found->frame != frame) return std::nullopt;
+    return found->time_s;
+  }
+
+  /// The frame that came nearest to a place. @return null where the place is of no frame of the
+  /// drive
+  [[nodiscard]] const Entry* nearest(std::uint64_t place) const noexcept {
+    const auto next = std::ranges::lower_bound(times_, std::optional(place), {}, &Entry::place);
+    if (next == times_.end()) return nullptr;
+    if (next->place == place) return &*next;
+    if (next == times_.begin()) return nullptr;
+    const auto before = std::prev(next);
+    return place - *before->place <= *next->place - place ? &*before : &*next;
   }
 
  private:
-  using Entry = std::pair<std::uint64_t, double>;
   std::vector<Entry> times_;
 };
 

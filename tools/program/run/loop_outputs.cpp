@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "files/text_file.hpp"
@@ -47,9 +48,7 @@ void add_loop_output_options(OptionTable& options, LoopOutputSettings& settings)
                "the frames' poses by odometry (TUM) [none]");
 }
 
-LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool own_places, bool closing,
-                         Faults& faults)
-    : own_places_(own_places) {
+LoopOutputs::LoopOutputs(const LoopOutputSettings& settings, bool closing, Faults& faults) {
   const bool wants_graph = !settings.pose_graph.empty() || !settings.trajectory.empty();
   if (!settings.pose_graph.empty() && !closing) {
     faults.push_back({"pose-graph", "the poses of the reference are not known",
@@ -100,11 +99,11 @@ void LoopOutputs::begin(const LoopOutputSettings& settings, LoopDrive drive) {
                 static_cast<double>(start) * 1e-9, drive_.sequence);
 }
 
-void LoopOutputs::add(const ProcessedFrame& processed) {
+void LoopOutputs::add(const ProcessedFrame& processed, std::optional<std::uint64_t> place) {
   if (!bag_ && !graph_) return;
   const FrameReport& report = processed.report;
   if (report.gate != Gate::no_frame) {
-    times_.add(report.newest, processed.frame.time_s);
+    times_.add({report.newest, processed.frame.time_s, place});
     if (graph_ && topic_.empty()) graph_->add(report.newest, processed.frame.time_s);
   }
   add(report.answers);
@@ -113,20 +112,26 @@ void LoopOutputs::add(const ProcessedFrame& processed) {
 void LoopOutputs::add(std::span<const Answer> answers) {
   if (graph_) add_to_graph(answers);
   add_to(bag_, [&](ClosuresBag& bag) {
-    bag.add(answers, times_, drive_.stamp_ns, own_places_, drive_.map);
+    bag.add(answers, times_, drive_.stamp_ns, drive_.map);
   });
 }
 
 void LoopOutputs::add_to_graph(std::span<const Answer> answers) {
   for (const Answer& answer : answers) {
     if (!closes_loop(answer)) continue;
-    const auto frame = frame_of(answer.match->place);
-    if (!frame) {
+    const std::uint64_t place = answer.match->place;
+    const FrameTimes::Entry* const near = times_.nearest(place);
+    if (near == nullptr) {
       ++of_earlier_;
       continue;
     }
+    const auto [less, more] = std::minmax(*near->place, place);
+    if (more - less > PoseGraph::loop_frames) {
+      ++of_unseen_;
+      continue;
+    }
     loops_.push_back(answer);
-    loops_.back().match->place = *frame;
+    loops_.back().match->place = near->frame;
   }
   if (topic_.empty()) graph_->add(std::exchange(loops_, {}));
 }
@@ -136,20 +141,13 @@ void LoopOutputs::add(std::span<const OtherLoop> loops) {
   add_to(bag_, [&](ClosuresBag& bag) { bag.add(loops, times_, drive_.stamp_ns); });
 }
 
-/// @return the drive's frame that a place is; nothing where it is of another drive
-std::optional<std::uint64_t> LoopOutputs::frame_of(std::uint64_t place) const {
-  if (own_places_ || drive_.map == nullptr) return place;
-  if (place < drive_.map->sessions().back().first) return std::nullopt;
-  return drive_.map->where(place).frame;
-}
-
 void LoopOutputs::end() {
   if (topic_.empty()) return;
   add_to(graph_, [&](PoseGraph& graph) {
     const std::int64_t start = drive_.start_ns();
     graph.begin(odometry_of(drive_.odometry(), topic_, start, SetBack::begins_anew),
                 static_cast<double>(start) * 1e-9, drive_.sequence);
-    for (const auto& [frame, time_s] : times_.all()) graph.add(frame, time_s);
+    for (const FrameTimes::Entry& entry : times_.all()) graph.add(entry.frame, entry.time_s);
     graph.add(loops_);
   });
 }
@@ -162,8 +160,9 @@ std::vector<std::string> LoopOutputs::notes() const {
     lines.push_back(fmt::format("{} with places of {} {} left out of it: their poses are not known",
                                 counted(loops, "loop"), whose, are(loops)));
   };
-  leave_out(of_earlier_, "earlier sessions, or that the map has forgotten,");
+  leave_out(of_earlier_, "earlier sessions");
   leave_out(of_others_, "other robots");
+  leave_out(of_unseen_, "frames that never came");
   return lines;
 }
 

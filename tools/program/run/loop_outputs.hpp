@@ -55,15 +55,15 @@ struct LoopDrive {
 class LoopOutputs {
  public:
   /// Opens the files. Adds faults where it cannot.
-  /// @param own_places whether places are frames of the drive itself
   /// @param closing whether frames of the drive are places, beside those of a map that lasts
-  LoopOutputs(const LoopOutputSettings& settings, bool own_places, bool closing, Faults& faults);
+  LoopOutputs(const LoopOutputSettings& settings, bool closing, Faults& faults);
 
   /// Reads the odometry of a recording. Throws SetupError.
   void begin(const LoopOutputSettings& settings, LoopDrive drive);
 
   /// Throw files::IoError; the others go on without the output that failed.
-  void add(const ProcessedFrame& processed);
+  /// @param place the number that the newest frame has as a place; nothing where it is none
+  void add(const ProcessedFrame& processed, std::optional<std::uint64_t> place);
   void add(std::span<const Answer> answers);
   void add(std::span<const OtherLoop> loops);
 
@@ -79,14 +79,13 @@ class LoopOutputs {
 
  private:
   void add_to_graph(std::span<const Answer> answers);
-  [[nodiscard]] std::optional<std::uint64_t> frame_of(std::uint64_t place) const;
 
-  bool own_places_;
   LoopDrive drive_;
   std::string topic_;             // of odometry that comes while the drive goes on
   std::vector<Answer> loops_;     // within the drive, by its frames' numbers
   std::uint64_t of_earlier_ = 0;  // loops with places of earlier sessions
-  std::uint64_t of_others_ = 0;   // and of other robots
+  std::uint64_t of_others_ = 0;   // of other robots
+  std::uint64_t of_unseen_ = 0;   // of frames of the drive that never came
   FrameTimes times_;
   std::unique_ptr<ClosuresBag> bag_;
   std::unique_ptr<PoseGraph> graph_;

@@ -21,8 +21,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 constexpr double odometry_metres = 0.05;           // after one metre
 constexpr double odometry_radians = 0.5 * degree;  // likewise
 constexpr double least_metres = 0.01;  // of a way: a robot that stands is not sure either
-// Of a place: how far a right answer is off in frames, and how far views of one place turn.
-constexpr double loop_frames = 2.0;
+// How far views of one place turn.
 constexpr double loop_radians = 5.0 * degree;
 
 /// Of the two quaternions that are one orientation, the one with w >= 0: some readers take the
@@ -85,13 +84,13 @@ void PoseGraph::add(std::span<const Answer> answers) {
 }
 
 std::vector<std::string> PoseGraph::notes() const {
-  const auto has_both = [&](const Loop& loop) {
-    return vertex(loop.frame) != nullptr && vertex(loop.match) != nullptr;
-  };
-  const auto edges = std::ranges::count_if(loops_, has_both);
-  std::vector<std::string> lines{fmt::format("pose graph: {}, {}",
-                                             counted(vertices_.size(), "pose"),
-                                             counted(static_cast<std::uint64_t>(edges), "loop"))};
+  const auto edges = static_cast<std::uint64_t>(
+      std::ranges::count_if(loops_, [&](const Loop& loop) { return has_poses(loop); }));
+  std::vector<std::string> lines{fmt::format(
+      "pose graph: {}, {}", counted(vertices_.size(), "pose"), counted(edges, "loop"))};
+  if (const std::uint64_t without = loops_.size() - edges; without > 0)
+    lines.push_back(fmt::format("{} {} left out of it for lack of a pose",
+                                counted(without, "loop"), are(without)));
   if (without_pose_ > 0)
     lines.push_back("no pose: " + counted(without_pose_, "frame") +
                     " outside of the odometry's times");
@@ -115,6 +114,10 @@ void PoseGraph::commit(Attempts& attempt) {
   }
   if (graph_) attempt([this] { write_graph(); });
   if (trajectory_) attempt([this] { write_trajectory(); });
+}
+
+bool PoseGraph::has_poses(const Loop& loop) const noexcept {
+  return vertex(loop.frame) != nullptr && vertex(loop.match) != nullptr;
 }
 
 const PoseGraph::Vertex* PoseGraph::vertex(std::uint64_t frame) const noexcept {
@@ -148,9 +151,9 @@ void PoseGraph::write_graph() {
                        1.0 / (odometry_metres * odometry_metres * length),
                        1.0 / (odometry_radians * odometry_radians * length)));
   }
-  const double off = loop_frames * metres_a_frame();
+  const double off = static_cast<double>(loop_frames) * metres_a_frame();
   for (const Loop& loop : loops_) {
-    if (vertex(loop.frame) == nullptr || vertex(loop.match) == nullptr) continue;
+    if (!has_poses(loop)) continue;
     const double weight = loop.probability / static_cast<double>(sequence_);
     graph_->write(edge(loop.match, loop.frame, Pose{}, weight / (off * off),
                        weight / (loop_radians * loop_radians)));

@@ -21,6 +21,9 @@ namespace seqloop::program {
 /// What an edge's information matrix means is on the program's page, "Pose graph".
 class PoseGraph {
  public:
+  /// How far a right answer is off, in frames.
+  static constexpr std::uint64_t loop_frames = 2;
+
   /// @param file g2o, opened at once; empty: not wanted   @param trajectory TUM, likewise
   /// Throws SetupError as files::OutputFile does.
   PoseGraph(const std::filesystem::path& file, const std::filesystem::path& trajectory);
@@ -53,6 +56,7 @@ class PoseGraph {
     double probability;
   };
 
+  [[nodiscard]] bool has_poses(const Loop& loop) const noexcept;
   [[nodiscard]] const Vertex* vertex(std::uint64_t frame) const noexcept;
   [[nodiscard]] double metres_a_frame() const;
   void write_graph();

@@ -153,7 +153,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   const bool closing = settings.reference.empty() && !settings.map.read_only;
   check(settings.map, !settings.reference.empty(), faults);
   setup.own_places = settings.reference.empty() && !lasts;
-  setup.loops = std::make_unique<LoopOutputs>(settings.loops, setup.own_places, closing, faults);
+  setup.loops = std::make_unique<LoopOutputs>(settings.loops, closing, faults);
   setup.config = resolve(settings.matcher, closing ? Use::close_loops : Use::localise, faults);
   check(settings.fleet, lasts, setup.config.enhance, faults);
   setup.budget = budget(settings.loop, faults);

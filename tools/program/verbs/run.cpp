@@ -176,6 +176,9 @@ void run(const RunSettings& settings, Faults faults) {
       setup.map ? setup.map->begin(map, setup.config, settings.matcher.method) : nullptr;
   if (setup.map && serving) serving->keep_in(*setup.map);
   if (setup.map && ros) ros->keep_in(*setup.map);
+  // Where places are numbered on, the drive's frames are from there.
+  std::optional<std::uint64_t> first_place;
+  if (setup.map && !settings.map.read_only) first_place = setup.map->sessions().back().first;
   become_real_time(settings.real_time);
   warm_up(setup.describer.get(), setup.config, setup.descriptor_size);
   start_playing(setup, settings, clock);
@@ -215,18 +218,22 @@ void run(const RunSettings& settings, Faults faults) {
       fleet->step(*processed, clock);
       if (const auto news = fleet->trouble()) progress.tell(*news);
     }
+    std::optional<std::uint64_t> newest_place;
+    if (first_place) newest_place = *first_place + processed->report.newest;
     numbers.rename(*processed);
+    if (setup.own_places) newest_place = processed->report.newest;
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);
     MapState kept{map.size(), setup.map ? setup.map->saved() : 0};
     if (fleet) kept.of_others = fleet->places();
+    kept.newest = newest_place;
     if (serving) serving->watch().publish(*processed, state, summary, kept, clock.now());
     if (ros) ros->publish(*processed, state, summary, kept, clock.now());
     if (fleet && serving) serving->watch().publish(fleet->loops());
     if (fleet && ros) ros->publish(fleet->loops());
     if (is_blank) ++blank_frames;
     lines_whole = attempt([&] { lines.add(*processed, state); });
-    if (!attempt([&] { setup.loops->add(*processed); })) {
+    if (!attempt([&] { setup.loops->add(*processed, newest_place); })) {
       progress.tell("the bag of loops cannot be written on, and is given up; the run goes on");
     }
     if (fleet) attempt([&] { setup.loops->add(fleet->loops()); });

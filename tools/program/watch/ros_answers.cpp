@@ -97,7 +97,8 @@ class RosAnswers::Impl {
         [this](const Snapshot& snapshot) {
           newest_ = snapshot;
           if (snapshot.frame.report.gate == Gate::no_frame) return;
-          times_.add(snapshot.frame.report.newest, snapshot.frame.frame.time_s);
+          times_.add({snapshot.frame.report.newest, snapshot.frame.frame.time_s,
+                      snapshot.map.newest});
         },
         [this, all](const Answer& answer) {
           if (!all && !has_come(answer)) return false;
@@ -119,7 +120,7 @@ class RosAnswers::Impl {
 
   void send(const Answer& answer) {
     const ros::LoopClosure closure =
-        closure_of(answer, times_, stamp_ns_, own_places_, session_of(answer.match->place));
+        closure_of(answer, times_, stamp_ns_, session_of(answer.match->place));
     ++matches_;
     count(publisher_.publish(closure));
     const SteadyTime now = std::chrono::steady_clock::now();

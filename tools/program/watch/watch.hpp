@@ -47,6 +47,8 @@ struct MapState {
   std::size_t places = 0;
   std::uint64_t saved = 0;  ///< frames of the drive that are on the disk for good
   std::optional<std::size_t> of_others = std::nullopt;  ///< places of other robots; none: no fleet
+  /// The number that the newest frame has as a place, or would have; none: places are of others
+  std::optional<std::uint64_t> newest = std::nullopt;
 };
 
 /// All that is shown of a frame, in fixed memory.
