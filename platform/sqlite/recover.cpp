@@ -240,7 +240,8 @@ class WithLog {
 
 class Copying {
  public:
-  Copying(Remains& remains, MapFile& map) : remains_(remains), map_(map) {
+  Copying(Remains& remains, MapFile& map, const std::function<void()>& between)
+      : remains_(remains), map_(map), between_(between) {
     for (const auto& [id, session] : remains.sessions) known_.push_back(session.facts);
   }
 
@@ -275,6 +276,7 @@ class Copying {
     const std::uint64_t frames =
         std::max(session.facts.frames, kept.empty() ? 0 : kept.back().frame + 1);
     for (const auto& [first, place] : session.blocks) {
+      between_();
       remains_.read_block(place, [&](const BlockRow& row) {
         const std::size_t saved = copy_block(own, row, kept, frames);
         places += saved;
@@ -285,6 +287,7 @@ class Copying {
     std::vector<SavedThumbnail> pictures;
     for (auto picture = from; picture != remains_.thumbnails.end() && picture->first < session.end;
          ++picture) {
+      between_();
       pictures.push_back(remains_.read_thumbnail(picture->second));
     }
     map_.save(own, {.frames = frames,
@@ -354,6 +357,7 @@ class Copying {
 
   Remains& remains_;
   MapFile& map_;
+  const std::function<void()>& between_;
   std::vector<SessionFacts> known_;
   Recovered result_;
 };
@@ -374,7 +378,7 @@ std::size_t page_size_of(const fs::path& path) {
 
 }  // namespace
 
-Recovered recover(const fs::path& in, const fs::path& out) {
+Recovered recover(const fs::path& in, const fs::path& out, const std::function<void()>& between) {
   const std::string name = in.string();
   if (!fs::is_regular_file(in) || !std::ifstream(in)) {
     throw SetupError({name, "there is no such map, or it must not be read", "name a map"});
@@ -397,8 +401,9 @@ Recovered recover(const fs::path& in, const fs::path& out) {
     if (!remains->form) {
       throw SetupError({name, "nothing of a map is whole in it", "take a copy, if there is one"});
     }
+    between();
     MapFile map = MapFile::open(out, remains->form);
-    Recovered result = Copying(*remains, map).all();
+    Recovered result = Copying(*remains, map, between).all();
     map.checkpoint();
     if (unknown) result.lost.emplace_back("what described the places, and in which form they are");
     return result;

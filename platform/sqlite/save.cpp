@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sqlite/state.hpp"
 
@@ -160,6 +161,8 @@ std::int64_t MapFile::begin_session(const std::string& name, std::int64_t began_
     if (known.name != name) continue;
     throw SetupError({file, "there is a session '" + name + "' already", "give another name"});
   }
+  // A drive's thumbnails come last: damage there would be met when its places are saved with them.
+  (void)thumbnails_around(static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()));
   const std::int64_t id = state_->counts.next_session;
   state_->saving([&] {
     state_->save_session({id, name, began_ns, settings, 0, 0, false});

@@ -13,6 +13,7 @@
 #include "expect_setup_error.hpp"
 #include "pages_in_circles.hpp"
 #include "seqloop/sqlite/recover.hpp"
+#include "sqlite/database.hpp"
 #include "sqlite/recording_vfs.hpp"
 #include "sqlite/sample_map.hpp"
 #include "sqlite/schema.hpp"
@@ -392,6 +393,39 @@ std::vector<std::string> recovered_names(const fs::path& file, const fs::path& o
     names.push_back(facts.name);
   }
   return names;
+}
+
+TEST(MapWithDamagedThumbnails, TakesNoDriveWhosePlacesItCouldNotSave) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "map";
+  make(file, {"a"});
+  std::int64_t root = 0;
+  {
+    sqlite::Database database(file, SQLITE_OPEN_READONLY);
+    root = database.number("SELECT rootpage FROM sqlite_master WHERE name = 'thumbnail'");
+  }
+  std::string bytes = test::read_all(file);
+  const auto begin = static_cast<std::size_t>(root - 1) * page;
+  ASSERT_LT(begin, bytes.size());
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(begin), page, '\x55');
+  folder.write("map", bytes);
+  MapFile map = MapFile::open(file, std::nullopt);
+  EXPECT_TRUE(test::says(
+      test::setup_error([&] { static_cast<void>(map.begin_session("b", 0, "")); }), "damaged"));
+  EXPECT_EQ(map.sessions().size(), 1U);
+}
+
+TEST(MapRecovery, EndsWhereItIsToldTo) {
+  const test::TemporaryFolder folder;
+  make(folder.path() / "map", {"a", "b"});
+  int calls = 0;
+  const auto end = [&] {
+    if (++calls == 3) throw std::runtime_error("interrupted");
+  };
+  EXPECT_THROW(
+      static_cast<void>(sqlite::recover(folder.path() / "map", folder.path() / "out", end)),
+      std::runtime_error);
+  EXPECT_EQ(calls, 3) << "once before, and with each block";
 }
 
 TEST(MapRecovery, MakesUpNamesThatAreFree) {

@@ -105,7 +105,9 @@ class Serve : public test::Program {
 };
 
 TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
-  start("--source q.npy --pace live --fps 40 --budget-total 10000 --min-probability 1");
+  start(
+      "--source q.npy --pace live --fps 40 --budget-total 10000 --min-probability 1 "
+      "--summary s.json");
   ASSERT_TRUE(until([](const Json& status) { return status["counts"]["frames"] > 5; }));
   ASSERT_TRUE(post("/api/control", {{"do", "pause"}}).starts_with("HTTP/1.1 200"));
   ASSERT_TRUE(until([](const Json& status) { return status["state"] == "paused"; }));
@@ -167,6 +169,11 @@ TEST_F(Serve, ShowsTheRunAndTakesWishesWithTheToken) {
   EXPECT_NE(get("/api/truth.csv").find("query,reference\n"), std::string::npos);
   EXPECT_EQ(answered("/api/control", {{"do", "stop"}}), "200");
   EXPECT_EQ(ended(), "0\n") << test::read_all(file("err.txt"));
+  const Json decision = Json::parse(test::read_all(file("s.json")))["decision"];
+  EXPECT_EQ(decision["min_probability"], 1);
+  ASSERT_EQ(decision["changes"].size(), 1U) << decision;
+  EXPECT_EQ(decision["changes"][0]["min_probability"], .5);
+  EXPECT_GT(decision["changes"][0]["frame"], 5);
 }
 
 TEST_F(Serve, TheLastEventCountsTheAnswersOfTheEnd) {
@@ -306,6 +313,7 @@ TEST_F(Serve, TellsWhatIsWrongBeforeAnyWork) {
   refused("--serve 127.0.0.1:0 --serve-token gone", "gone cannot be read");
   folder_.write("short", "abc\n");
   refused("--serve 127.0.0.1:0 --serve-token short", "holds no token");
+  refused("--serve 127.0.0.1:0 --serve-token /dev/zero", "holds no token");
   refused("--serve-token token", "nothing is served");
   refused("--serve robot:80 --serve-token gone --map none/m.seqloop", "no IP address");
   refused("--serve robot:80 --serve-token gone --map none/m.seqloop", "gone cannot be read");

@@ -99,6 +99,7 @@ void export_map(const MapFile& map, const fs::path& folder) {
 
   table = std::string(links_header) + '\n';
   map.read_links([&](const sqlite::SavedLink& link) {
+    stop_if_interrupted();
     if (!numbers.contains(link.session)) {
       throw SetupError({map.path().string(), "a link belongs to no session",
                         "`seqloop map recover` copies what is whole into a new file"});
@@ -108,6 +109,7 @@ void export_map(const MapFile& map, const fs::path& folder) {
   });
   out.write("links.csv", table);
   map.read_thumbnails([&](const sqlite::SavedThumbnail& picture) {
+    stop_if_interrupted();
     out.write(fmt::format("thumbnail-{}.jpg", picture.place), picture.jpeg);
   });
   out.commit();

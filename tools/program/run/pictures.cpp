@@ -156,13 +156,6 @@ bool write_sheet(const std::filesystem::path& folder, const std::vector<Answer>&
   return true;
 }
 
-Pictures frames_of(const PictureRecorder::Reopen& drive, const std::vector<Answer>& answers) {
-  std::vector<std::uint64_t> frames;
-  frames.reserve(answers.size());
-  for (const Answer& answer : answers) frames.push_back(answer.frame);
-  return fetch(*drive(), frames);
-}
-
 }  // namespace
 
 void PictureRecorder::add(std::span<const Answer> answers) {
@@ -245,19 +238,38 @@ std::vector<Answer> PictureRecorder::chosen() const {
 bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
                                   const Reopen& reference) const {
   const std::vector<Answer> some = chosen();
+  std::vector<std::uint64_t> frames;
   std::vector<std::uint64_t> places;
-  places.reserve(some.size());
-  for (const Answer& answer : some) places.push_back(answer.match->place);
+  for (const Answer& answer : some) {
+    frames.push_back(answer.frame);
+    places.push_back(answer.match->place);
+  }
   const auto name = [](std::uint64_t place) { return fmt::format("is place {}", place); };
-  return write_sheet(folder, some, frames_of(query, some), fetch(*reference(), places), name);
+  return write_sheet(folder, some, fetch(*query(), std::move(frames)),
+                     fetch(*reference(), std::move(places)), name);
 }
 
 bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reopen& query,
-                                  const LastingMap& map) const {
+                                  const LastingMap& map, const std::string& own) const {
   const std::vector<Answer> some = chosen();
+  const auto own_frame = [&](const Answer& answer) -> std::optional<std::uint64_t> {
+    const LastingMap::Seen seen = map.where(answer.match->place);
+    return !own.empty() && seen.session == own ? seen.frame : std::nullopt;
+  };
+  std::vector<std::uint64_t> frames;
+  for (const Answer& answer : some) {
+    frames.push_back(answer.frame);
+    if (const auto frame = own_frame(answer)) frames.push_back(*frame);
+  }
+  const Pictures seen = fetch(*query(), std::move(frames));
   const std::unique_ptr<PlacePictures> pictures = map.pictures();
   Pictures known;
   for (const Answer& answer : some) {
+    const auto frame = own_frame(answer);
+    if (const auto its = frame ? seen.find(*frame) : seen.end(); its != seen.end()) {
+      known[answer.match->place] = its->second;
+      continue;
+    }
     const std::string jpeg = pictures->jpeg(answer.match->place);
     if (jpeg.empty()) continue;
     const std::vector<std::uint8_t> bytes(jpeg.begin(), jpeg.end());
@@ -265,11 +277,11 @@ bool PictureRecorder::write_pairs(const std::filesystem::path& folder, const Reo
     if (!thumbnail.empty()) known[answer.match->place] = small(thumbnail, cv::INTER_LINEAR);
   }
   const auto name = [&map](std::uint64_t place) {
-    const LastingMap::Seen seen = map.where(place);
-    return seen.frame ? fmt::format("is {} of {}", *seen.frame, seen.session)
-                      : fmt::format("is place {}", place);
+    const LastingMap::Seen where = map.where(place);
+    return where.frame ? fmt::format("is {} of {}", *where.frame, where.session)
+                       : fmt::format("is place {}", place);
   };
-  return write_sheet(folder, some, frames_of(query, some), known, name);
+  return write_sheet(folder, some, seen, known, name);
 }
 
 }  // namespace seqloop::program

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "program/map/lasting_map.hpp"
@@ -46,9 +47,10 @@ class PictureRecorder {
   bool write_pairs(const std::filesystem::path& folder, const Reopen& query,
                    const Reopen& reference) const;
 
-  /// The same of a map that lasts, with places as its thumbnails show them, as far as it has any.
-  bool write_pairs(const std::filesystem::path& folder, const Reopen& query,
-                   const LastingMap& map) const;
+  /// The same of a map that lasts, with places of earlier sessions as its thumbnails show them, as
+  /// far as it has any. @param own the session that the drive has become; empty: none
+  bool write_pairs(const std::filesystem::path& folder, const Reopen& query, const LastingMap& map,
+                   const std::string& own) const;
 
  private:
   [[nodiscard]] std::vector<Answer> chosen() const;

@@ -37,13 +37,19 @@ Json budget_json(const Budget& budget) {
           {"match", milliseconds(budget.match)}};
 }
 
-Json decision_json(const MatcherConfig& config) {
+Json decision_json(const RunConditions& conditions) {
+  const MatcherConfig& config = conditions.config;
   if (config.decision == Decision::uniqueness) {
     return {{"by", "uniqueness"}, {"max_uniqueness", config.max_uniqueness}};
   }
-  return {{"by", "probability"},
-          {"min_probability", config.min_probability},
-          {"patience", config.patience}};
+  Json json{{"by", "probability"},
+            {"min_probability", config.min_probability},
+            {"patience", config.patience}};
+  for (const ThresholdChange& change : conditions.changes) {
+    json["changes"].push_back(
+        {{"frame", change.frame}, {"min_probability", change.min_probability}});
+  }
+  return json;
 }
 
 }  // namespace
@@ -57,7 +63,7 @@ Json conditions_json(const RunConditions& conditions) {
   json["capture"] = conditions.capture;
   json["method"] = conditions.method;
   json["ds"] = conditions.config.sequence_length;
-  json["decision"] = decision_json(conditions.config);
+  json["decision"] = decision_json(conditions);
   json["places"] = conditions.places;
   json["descriptor_size"] = conditions.descriptor_size;
   json["budget_ms"] = budget_json(conditions.budget);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "program/run/run_summary.hpp"
 #include "seqloop/budget.hpp"
@@ -18,6 +19,12 @@ struct ThreadCost {
   std::uint64_t major_faults = 0;  ///< pages that had to be read from a disk
 };
 
+/// From this frame on answers were accepted from this probability on.
+struct ThresholdChange {
+  std::uint64_t frame = 0;
+  float min_probability = 0.0F;
+};
+
 /// What a run's numbers have to be read with.
 struct RunConditions {
   std::filesystem::path source;
@@ -29,12 +36,14 @@ struct RunConditions {
   std::size_t descriptor_size = 0;  ///< D
   Budget budget;
   OverloadRule overload;
-  std::uint64_t overloads = 0;  ///< how often the policy came into force
-  std::string capture;          ///< the camera and its mode; empty for recordings
-  ThreadCost cost;              ///< of the thread that decodes, describes, matches and writes
+  std::uint64_t overloads = 0;                ///< how often the policy came into force
+  std::string capture;                        ///< the camera and its mode; empty for recordings
+  std::vector<ThresholdChange> changes = {};  ///< by a person, while it ran
+  ThreadCost cost;  ///< of the thread that decodes, describes, matches and writes
 };
 
-/// What a run was started with: `source`, `method`, `decision`, `budget_ms` and so on.
+/// What a run was started with, and what was changed since: `source`, `method`, `decision`,
+/// `budget_ms` and so on.
 [[nodiscard]] nlohmann::ordered_json conditions_json(const RunConditions& conditions);
 
 /// A run as one JSON object, newline included: conditions, counts, and of every stage its quantiles

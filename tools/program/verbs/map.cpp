@@ -114,7 +114,7 @@ void recover(const MapSettings& settings) {
   NewMap out(settings.words[2]);
   sqlite::Recovered found;
   out.make([&] {
-    found = sqlite::recover(settings.words[1], out.partial());
+    found = sqlite::recover(settings.words[1], out.partial(), stop_if_interrupted);
     if (found.places == 0 && !found.lost.empty()) {
       throw SetupError(
           {settings.words[1], "no place of it is whole", "take a copy, if there is one"});

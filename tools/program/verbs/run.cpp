@@ -49,11 +49,13 @@ void write_pictures(const RunSettings& settings, const PictureRecorder& recorder
   const bool matrix = attempt([&] { recorder.write_matrix(settings.pictures, map); });
   bool pairs = false;
   const bool looked = attempt([&] {
-    pairs = lasting != nullptr
-                ? recorder.write_pairs(settings.pictures, reopen(settings.source), *lasting)
-                : recorder.write_pairs(
-                      settings.pictures, reopen(settings.source),
-                      reopen(settings.reference.empty() ? settings.source : settings.reference));
+    pairs =
+        lasting != nullptr
+            ? recorder.write_pairs(settings.pictures, reopen(settings.source), *lasting,
+                                   settings.map.read_only ? "" : lasting->sessions().back().name)
+            : recorder.write_pairs(
+                  settings.pictures, reopen(settings.source),
+                  reopen(settings.reference.empty() ? settings.source : settings.reference));
   });
   if (!matrix || !looked) return;
   say("pictures in {}: {}{}", settings.pictures.string(), matrix_name,
@@ -102,11 +104,18 @@ void stop_before_the_first_frame(LastingMap* map) {
 }
 
 /// Does what people wish, before the next frame. @return whether the run goes on
-bool heed(const Wishes& wishes, Detector& detector, Clock& clock) {
+bool heed(const Wishes& wishes, Detector& detector, Clock& clock, std::uint64_t frame,
+          RunConditions& conditions) {
   constexpr auto pause = std::chrono::milliseconds(20);
   while (wishes.pause && !wishes.stop && !interrupted()) clock.sleep_until(clock.now() + pause);
   const float least = wishes.min_probability.load(std::memory_order_relaxed);
-  if (least > 0.0F) detector.accept_from(least);
+  auto& changes = conditions.changes;
+  const float before =
+      changes.empty() ? conditions.config.min_probability : changes.back().min_probability;
+  if (least > 0.0F && least != before) {
+    detector.accept_from(least);
+    changes.push_back({frame, least});
+  }
   return !wishes.stop && !interrupted();
 }
 
@@ -120,12 +129,19 @@ void run(const RunSettings& settings, Faults faults) {
   stop_if_interrupted();
   if (!setup.capture.empty()) say("{}: {}", settings.source.string(), setup.capture);
 
-  RunConditions conditions{settings.source,       settings.reference,
-                           settings.map.file,     settings.matcher.method,
-                           setup.config,          setup.places,
-                           setup.descriptor_size, setup.budget,
-                           setup.overload,        0,
-                           setup.capture,         {}};
+  RunConditions conditions{settings.source,
+                           settings.reference,
+                           settings.map.file,
+                           settings.matcher.method,
+                           setup.config,
+                           setup.places,
+                           setup.descriptor_size,
+                           setup.budget,
+                           setup.overload,
+                           0,
+                           setup.capture,
+                           {},
+                           {}};
   const std::unique_ptr<Serving> serving = open_serving(settings, setup, conditions);
   std::unique_ptr<RosAnswers> ros;
   if (settings.ros) {
@@ -193,12 +209,13 @@ void run(const RunSettings& settings, Faults faults) {
   if (fleet) of_others = [&fleet](nlohmann::ordered_json& frame) { fleet->add_to(frame); };
   FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get(), of_others);
   std::uint64_t blank_frames = 0;
+  std::uint64_t next_frame = 0;
   bool map_full = false;
   bool given_up = false;
   Attempts attempt;
   bool lines_whole = true;
   while (!interrupted() && (settings.frames == 0 || summary.frames() < settings.frames)) {
-    if (serving && !heed(serving->watch().wishes, detector, clock)) break;
+    if (serving && !heed(serving->watch().wishes, detector, clock, next_frame, conditions)) break;
     std::optional<ProcessedFrame> processed = pipeline.process();
     if (!processed) break;
     if (!settings.pictures.empty()) {
@@ -221,6 +238,7 @@ void run(const RunSettings& settings, Faults faults) {
     std::optional<std::uint64_t> newest_place;
     if (first_place) newest_place = *first_place + processed->report.newest;
     numbers.rename(*processed);
+    if (processed->report.gate != Gate::no_frame) next_frame = processed->report.newest + 1;
     if (setup.own_places) newest_place = processed->report.newest;
     const LoopState state{misses(processed->times, setup.budget), overload.overloaded()};
     summary.add(*processed, state);

@@ -39,8 +39,11 @@ std::string read_token(const std::filesystem::path& file) {
   constexpr std::size_t shortest = 16;
   constexpr std::size_t longest = 256;
   std::ifstream stream(file);
-  std::string token;
-  std::getline(stream, token);
+  // A file of another kind may have no lines, and no end.
+  std::string token(longest + 2, '\0');
+  stream.read(token.data(), static_cast<std::streamsize>(token.size()));
+  token.resize(static_cast<std::size_t>(stream.gcount()));
+  token.resize(std::min(token.find('\n'), token.size()));
   while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
   const bool visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7F; });
   if (!stream.is_open() || !visible || token.size() < shortest || token.size() > longest) {

@@ -121,7 +121,8 @@ function draw() {
     show('probability-text', 'This run decides by uniqueness: no answer has a probability.');
     byId('probability').hidden = true;
   } else {
-    drawProbability(byId('probability'), view.answers, decision.min_probability);
+    const last = (decision.changes || []).slice(-1)[0] || decision;
+    drawProbability(byId('probability'), view.answers, last.min_probability);
   }
   drawTimes(byId('times'), view.frames, (status.run.budget_ms || {}).total);
 }

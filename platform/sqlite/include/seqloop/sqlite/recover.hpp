@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,11 @@ struct Recovered {
 /// are numbered anew. The damaged file is only read.
 /// @param in a map, with its log beside it where there is one
 /// @param out a new file, or an empty one, written bit by bit: it is whole when this returns
+/// @param between called again and again meanwhile; may throw to end the work
 /// Throws SetupError: not readable, nothing whole in it, `out` is there already; SaveError. Work:
 /// the file, three times.
-[[nodiscard]] Recovered recover(const std::filesystem::path& in, const std::filesystem::path& out);
+[[nodiscard]] Recovered recover(
+    const std::filesystem::path& in, const std::filesystem::path& out,
+    const std::function<void()>& between = [] {});
 
 }  // namespace seqloop::sqlite
