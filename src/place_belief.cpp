@@ -365,6 +365,9 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
     at.mass *= exponential(at.told);
     at.gain = (1.0 - forgotten_by(w)) * at.gain + at.told;
     at.contrast = (1.0 - most_forgotten) * at.contrast + most_forgotten * gain.contrast;
+    const double alike = scene.alike(gain.here);
+    at.alike =
+        at.parent == BeliefTraces::none ? alike : at.alike + most_forgotten * (alike - at.alike);
     at.age += w;
     const double least = std::clamp(part_of_usual * at.usual, 0.0, right_gain);
     at.doubt = std::max(0.0, (1.0 - doubt_lost * w) * at.doubt + scene.change * (least - l));
@@ -482,6 +485,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps)
                           .in_step = top->in_step,
                           .age = logarithm(1.0 + top->age),
                           .doubt = top->doubt,
+                          .unlike = unlike(*view.map, *top),
                           .jumps = jumps}};
 }
 
@@ -495,6 +499,17 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   const auto index = static_cast<std::size_t>(&at - rows_.data());
   at.parent = top.parent;
   traces_.set_parent(index, at.parent);
+}
+
+/// How much less alike a place looks than it has to. Who is back within 100 rows is back in the
+/// same light. What comes again so soon, and looks little like it was, is a wiper on the lens, say,
+/// or one rack after the other.
+double PlaceBelief::unlike(const PlaceMap& map, const Hypothesis& at) const noexcept {
+  constexpr std::size_t soon = 100;
+  constexpr double least = 0.45;
+  const bool is_of_this_drive = !localises_ && at.row >= map.order().newest_session().first;
+  if (!is_of_this_drive || map.size() - at.row >= soon) return 0.0;
+  return std::max(0.0, least - at.alike);
 }
 
 /// Which rows were wrong some frames ago, by the trace of what is the likeliest row now and on the

@@ -32,6 +32,7 @@ class NaiveBelief {
     double usual = 2.0;  // decaying mean of l
     double past = -10.0;
     double in_step = 0.0, step = 0.0;  // decaying mean, and the newest; NaN: nothing is known
+    double alike = 0.0;                // decaying mean
     std::vector<std::size_t> way;      // rows that it came through, the newest last
   };
 
@@ -47,6 +48,7 @@ class NaiveBelief {
       return rows.look_closely(rows, view.queries->row_of(a), view.queries->row_of(b)) / 1024.0;
     };
     const auto t = static_cast<std::size_t>(view.newest);
+    places_ = view.map->size();
     // 6.1
     std::vector<double> shares;
     for (const std::uint32_t bits : view.seen->scanned()) shares.push_back(bits / 256.0);
@@ -152,6 +154,8 @@ class NaiveBelief {
           at.in_step = 0.95 * at.in_step + 0.05 * at.step;
         }
       }
+      const double alike = mu > 0.0 ? 1.0 - std::pow(chord(here) / chord(mu), 2) : 0.0;
+      at.alike = at.way.size() == 1 ? alike : 0.95 * at.alike + 0.05 * alike;
       at.age += w;
       at.doubt = std::max(0.0, (1.0 - 0.015 * w) * at.doubt +
                                    change * (std::clamp(0.75 * at.usual, 0.0, 1.25) - l));
@@ -331,11 +335,14 @@ class NaiveBelief {
     evidence.in_step = top->second.in_step;
     evidence.age = std::log(1.0 + top->second.age);
     evidence.doubt = top->second.doubt;
+    const bool is_back_soon = !localises_ && !earlier_drives_ && places_ - top->first < 100;
+    evidence.unlike = is_back_soon ? std::max(0.0, 0.45 - top->second.alike) : 0.0;
   }
 
   bool earlier_drives_;
   bool localises_;
   double jumps_;
+  std::size_t places_ = 0;
   int weighed_ = 0;
   std::map<std::size_t, Row> rows_;
   std::vector<Showed> showed_;
@@ -393,6 +400,7 @@ void expect_like_the_naive_one(const oracle::Vectors& places, const oracle::Vect
     ASSERT_NEAR(e.contrast, naive.evidence.contrast, 1e-6);
     ASSERT_NEAR(e.age, naive.evidence.age, 1e-6);
     ASSERT_NEAR(e.doubt, naive.evidence.doubt, 1e-6);
+    ASSERT_NEAR(e.unlike, naive.evidence.unlike, 1e-6);
     // Of two rows that a row comes from, and that are equal but for rounding, either may be taken.
     std::vector<BeliefTraces::Step> trace(PlaceBelief::depth(config));
     trace.resize(belief.trace(belief.likeliest()->index, trace));

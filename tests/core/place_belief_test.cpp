@@ -314,6 +314,25 @@ TEST(PlaceBelief, ClosesLoopsLapAfterLapNoWorseInTheEnd) { expect_found_lap_afte
 
 TEST(PlaceBelief, ClosesLoopsOnShortLaps) { expect_found_lap_after_lap(90); }
 
+/// A wiper on the lens, say, that comes by again and again while nothing else does.
+TEST(PlaceBelief, WhatComesAgainAndAgainIsNoLap) {
+  std::size_t accepted = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    for (const std::size_t period : {30U, 40U, 60U}) {
+      oracle::Vectors drive = way(seed, 500, 0.3F, 1);
+      const oracle::Vectors wiper = way(seed + 70, period, 0.3F, 1, size, 0.0F);
+      for (std::size_t i = 0; i < drive.size(); ++i) {
+        for (std::size_t d = 0; d < size; ++d) drive[i][d] += 0.4F * wiper[i % period][d];
+      }
+      for (const Answer& answer :
+           drive_through({}, unit(drive), settings(Use::close_loops)).answers) {
+        accepted += answer.gate == Gate::match ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(accepted, 0U) << "of 9,000";
+}
+
 TEST(PlaceBelief, ARobotThatStandsGainsNothing) {
   const oracle::Vectors places = way(4, 300, 0.5F, 1);
   oracle::Vectors query = way(5, 30, 0.5F, 1);

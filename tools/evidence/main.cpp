@@ -22,13 +22,14 @@ void write(const Matrix& query, std::optional<Matrix> reference) {
   config.use = reference ? seqloop::Use::localise : seqloop::Use::close_loops;
   seqloop::PlaceMap map = seqloop::program::map_for(config, std::move(reference), query);
   seqloop::Detector detector(config, map);
-  std::puts("frame,place,odds,known,lead,contrast,in_step,age,margin,doubt");
+  std::puts("frame,place,odds,known,lead,contrast,in_step,age,margin,doubt,unlike");
   for (std::size_t i = 0; i < query.rows; ++i) {
     const seqloop::FrameReport report = detector.step(query.row(i));
     if (!report.now) continue;
     const seqloop::Evidence& e = *detector.evidence();
-    std::printf("%zu,%llu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, 0ULL + report.now->place,
-                e.odds, e.known, e.lead, e.contrast, e.in_step, e.age, e.margin, e.doubt);
+    std::printf("%zu,%llu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i,
+                0ULL + report.now->place, e.odds, e.known, e.lead, e.contrast, e.in_step, e.age,
+                e.margin, e.doubt, e.unlike);
   }
 }
 

@@ -191,7 +191,8 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
   return faults;
 }
 
-/// What is behind `--flag=` is its value, also where that is nothing: CLI11 would take the next word.
+/// What is behind `--flag=` is its value, also where that is nothing: CLI11 would take the next
+/// word.
 /// @param valued names of the flags that have one
 std::vector<std::string> split_empty_values(std::span<char* const> words,
                                             const std::set<std::string>& valued) {

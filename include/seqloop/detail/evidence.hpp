@@ -16,6 +16,7 @@ struct Evidence {
   double age = 0.0;       ///< ln (1 + novel frames that have followed it)
   double margin = 0.0;    ///< ln of the best other place's score by this one's, mean of windows
   double doubt = 0.0;     ///< how much less the newest frames speak for it than for right rows
+  double unlike = 0.0;    ///< how much less alike it looks than a place of just now would
   double jumps = 0.0;     ///< the chance of a jump, if it was found on this map lately, 0 .. .5
   double asked = 0.0;     ///< how much more the log-odds have to be, since much looks alike
 };
@@ -44,11 +45,13 @@ inline constexpr double least_odds = 2.0;
 }
 
 /// The log-odds that the row is right: either suffices. A robot that has been carried about on this
-/// map, and was found again and again, is hardly on another that looks like it.
+/// map, and was found again and again, is hardly on another that looks like it. What looks too
+/// little like a place of just now is something that goes with the robot, or stands along its way
+/// again and again.
 [[nodiscard]] inline double log_odds(const Evidence& e) noexcept {
   constexpr double most = 2.0;
   const double carried_about = std::min(most, 10.0 * e.jumps);
-  return std::max(log_odds_followed(e), log_odds_alone(e)) + carried_about;
+  return std::max(log_odds_followed(e), log_odds_alone(e)) + carried_about - 40.0 * e.unlike;
 }
 
 /// The log-odds that the robot is there still, and was not carried away with the newest frames,

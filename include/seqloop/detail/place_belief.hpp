@@ -129,6 +129,7 @@ class PlaceBelief {
     double usual = 2.0;     // decaying mean of what frames said, by novelty
     double past = -10.0;    // best log-odds on the way
     double contrast = 0.0;  // decaying mean
+    double alike = 0.0;     // likewise, of `Scene::alike`
     double step = 0.0;      // the newest `in_step`; NaN: nothing is known
     double in_step = 0.0;   // decaying mean of those that are known
     double age = 0.0;       // novel frames
@@ -180,6 +181,7 @@ class PlaceBelief {
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
+  [[nodiscard]] double unlike(const PlaceMap& map, const Hypothesis& at) const noexcept;
   void know_better(const PlaceMap& map, std::size_t index) noexcept;
 
   bool localises_;

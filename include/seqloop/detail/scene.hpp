@@ -11,6 +11,7 @@
 #include "seqloop/detail/candidate_proposals.hpp"
 #include "seqloop/detail/descriptor_rows.hpp"
 #include "seqloop/detail/query_history.hpp"
+#include "seqloop/detail/sketch.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop {
@@ -55,6 +56,12 @@ struct Scene {
   /// How much more alike than rows usually are, in their deviations.
   /// @param share of bits in which the sketches differ
   [[nodiscard]] double likeness(double share) const noexcept { return (mean - share) / deviation; }
+
+  /// How alike frame and row are: 1, the same; 0, as rows usually are. 0 where all rows show what
+  /// the frame does. @param share as `likeness` has it
+  [[nodiscard]] double alike(double share) const noexcept {
+    return mean > 0.0 ? 1.0 - squared_chord(share) / squared_chord(mean) : 0.0;
+  }
 };
 
 /// Frames, and rows, that lie so far apart are compared.

@@ -111,9 +111,7 @@ void LoopOutputs::add(const ProcessedFrame& processed, std::optional<std::uint64
 
 void LoopOutputs::add(std::span<const Answer> answers) {
   if (graph_) add_to_graph(answers);
-  add_to(bag_, [&](ClosuresBag& bag) {
-    bag.add(answers, times_, drive_.stamp_ns, drive_.map);
-  });
+  add_to(bag_, [&](ClosuresBag& bag) { bag.add(answers, times_, drive_.stamp_ns, drive_.map); });
 }
 
 void LoopOutputs::add_to_graph(std::span<const Answer> answers) {

@@ -86,11 +86,11 @@ void PoseGraph::add(std::span<const Answer> answers) {
 std::vector<std::string> PoseGraph::notes() const {
   const auto edges = static_cast<std::uint64_t>(
       std::ranges::count_if(loops_, [&](const Loop& loop) { return has_poses(loop); }));
-  std::vector<std::string> lines{fmt::format(
-      "pose graph: {}, {}", counted(vertices_.size(), "pose"), counted(edges, "loop"))};
+  std::vector<std::string> lines{
+      fmt::format("pose graph: {}, {}", counted(vertices_.size(), "pose"), counted(edges, "loop"))};
   if (const std::uint64_t without = loops_.size() - edges; without > 0)
-    lines.push_back(fmt::format("{} {} left out of it for lack of a pose",
-                                counted(without, "loop"), are(without)));
+    lines.push_back(fmt::format("{} {} left out of it for lack of a pose", counted(without, "loop"),
+                                are(without)));
   if (without_pose_ > 0)
     lines.push_back("no pose: " + counted(without_pose_, "frame") +
                     " outside of the odometry's times");

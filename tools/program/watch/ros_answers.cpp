@@ -97,8 +97,8 @@ class RosAnswers::Impl {
         [this](const Snapshot& snapshot) {
           newest_ = snapshot;
           if (snapshot.frame.report.gate == Gate::no_frame) return;
-          times_.add({snapshot.frame.report.newest, snapshot.frame.frame.time_s,
-                      snapshot.map.newest});
+          times_.add(
+              {snapshot.frame.report.newest, snapshot.frame.frame.time_s, snapshot.map.newest});
         },
         [this, all](const Answer& answer) {
           if (!all && !has_come(answer)) return false;
