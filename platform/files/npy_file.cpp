@@ -31,7 +31,7 @@ std::uint64_t open_regular(const std::filesystem::path& path, std::ifstream& str
   if (std::filesystem::is_directory(status))
     throw SetupError(Fault{name, "is a folder, not a .npy file", "describe its pictures first"});
   if (!std::filesystem::is_regular_file(status))
-    throw SetupError(Fault{name, "is not a regular file"});
+    throw SetupError(Fault{name, "is not a regular file", "give the name of a file"});
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   stream.open(path, std::ios::binary);
   if (error || !stream) throw SetupError(Fault{name, "cannot be opened", "check its permissions"});
@@ -44,13 +44,14 @@ NpyHeader read_header(std::ifstream& stream, std::uint64_t file_bytes, const std
   stream.read(preamble.data(), preamble.size());
   const auto got = static_cast<std::size_t>(stream.gcount());
   const std::uint64_t offset = npy_data_offset(std::span(preamble).first(got), name);
-  if (offset > file_bytes) throw SetupError(Fault{name, "is truncated inside its header"});
+  if (offset > file_bytes)
+    throw SetupError(Fault{name, "is truncated inside its header", "make the file again"});
 
   std::vector<char> start(static_cast<std::size_t>(offset));
   stream.clear();
   stream.seekg(0);
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (!stream) throw SetupError(Fault{name, "cannot be read"});
+  if (!stream) throw SetupError(Fault{name, "cannot be read", "check the disk it lies on"});
   const NpyHeader header = parse_npy_header(start, name);
 
   const std::uint64_t data_bytes = file_bytes - offset;
@@ -84,7 +85,8 @@ Matrix read_npy(const std::filesystem::path& path) {
   // A read of the standard library goes through char, which may alias anything.
   stream.read(static_cast<char*>(static_cast<void*>(bytes.data())),
               static_cast<std::streamsize>(bytes.size()));
-  if (!stream) throw SetupError(Fault{name, "cannot be read to its end"});
+  if (!stream)
+    throw SetupError(Fault{name, "cannot be read to its end", "check the disk it lies on"});
 
   check_finite(matrix, name);
   return matrix;

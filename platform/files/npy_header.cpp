@@ -104,15 +104,17 @@ void read_shape(std::string_view dictionary, const std::string& name, NpyHeader&
   const auto value = value_of(dictionary, "shape");
   const auto shape = value ? numbers(*value) : std::nullopt;
   if (!shape) {
-    faults.push_back({name, "its header has no readable shape"});
+    faults.push_back({name, "its header has no readable shape", remedy});
   } else if (shape->size() != 2) {
     faults.push_back({name, "it has " + std::to_string(shape->size()) + " dimensions, not 2",
                       "give one row a frame, [N, D]"});
   } else {
     header.rows = (*shape)[0];
     header.columns = (*shape)[1];
-    if (header.rows == 0) faults.push_back({name, "it has no rows"});
-    if (header.columns == 0) faults.push_back({name, "its rows have no values"});
+    if (header.rows == 0)
+      faults.push_back({name, "it has no rows", "describe a drive that has frames"});
+    if (header.columns == 0)
+      faults.push_back({name, "its rows have no values", "describe the drive again"});
   }
 }
 
@@ -124,15 +126,17 @@ std::uint64_t npy_data_offset(std::span<const char> start, const std::string& na
   if (!text.starts_with(magic.substr(0, text.size())))
     throw SetupError(Fault{name, "is not a .npy file", remedy});
   if (text.size() < magic.size() + 2)
-    throw SetupError(Fault{name, "is truncated inside its header"});
+    throw SetupError(Fault{name, "is truncated inside its header", "make the file again"});
   const std::size_t length = length_bytes(text[magic.size()]);
   if (length == 0)
-    throw SetupError(
-        Fault{name, "is of .npy version " +
-                        std::to_string(static_cast<unsigned char>(text[magic.size()])) +
-                        ", not 1, 2 or 3"});
+    throw SetupError(Fault{name,
+                           "is of .npy version " +
+                               std::to_string(static_cast<unsigned char>(text[magic.size()])) +
+                               ", not 1, 2 or 3",
+                           remedy});
   const std::size_t begin = magic.size() + 2;
-  if (text.size() < begin + length) throw SetupError(Fault{name, "is truncated inside its header"});
+  if (text.size() < begin + length)
+    throw SetupError(Fault{name, "is truncated inside its header", "make the file again"});
   return begin + length + little_endian(start.subspan(begin, length));
 }
 

@@ -474,6 +474,46 @@ TEST(Keyframes, LetARobotStandWhereEachFrameIsNew) {
   }
 }
 
+/// Rows that the belief moves on by while 20 frames show the same, and one that nobody knows.
+/// @param pieces of the way that the robot drives before; it is carried from each to the next
+std::int64_t moved_behind(const Vectors& known, const Vectors& seen,
+                          std::initializer_list<CandidateRun> pieces,
+                          const std::vector<float>& shown) {
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  Detector detector(config, map);
+  const auto place_at = [&](const std::vector<float>& frame) {
+    const FrameReport report = detector.step(frame);
+    return report.now ? static_cast<std::int64_t>(report.now->place) : -1;
+  };
+  std::int64_t before = 0;
+  for (const auto& [first, last] : pieces) {
+    for (std::size_t row = first; row < last; ++row) before = place_at(seen[row]);
+  }
+  for (int i = 0; i < 20; ++i) static_cast<void>(place_at(shown));
+  return place_at(test::way(8, 1, 0.3F, 1).front()) - before;
+}
+
+// Somebody may stand before the camera of a robot that drives on.
+TEST(Keyframes, LetOnlyARobotThatMayBeHiddenDriveOnUnseen) {
+  constexpr float nothing_kept = 0.0F;
+  const Vectors known = test::way(1, 300, 0.3F, 1, 256, nothing_kept);
+  const Vectors seen = test::way(1, 300, 0.3F, 2, 256, nothing_kept);
+  const std::vector<float> somebody = test::way(9, 1, 0.3F, 1, 256, nothing_kept).front();
+  EXPECT_GE(moved_behind(known, seen, {{0, 150}}, somebody), 10);
+  // The first of the frames moves the belief on, and the one behind them.
+  EXPECT_LE(moved_behind(known, seen, {{0, 150}}, seen[150]), 2) << "it shows its place";
+  EXPECT_LE(moved_behind(known, seen, {{0, 80}, {150, 230}}, somebody), 2) << "after a jump";
+  const Vectors near = test::way(1, 300, 0.3F, 1);
+  const Vectors foreign = test::way(9, 20, 0.3F, 2);
+  Vectors leaves(near.begin(), near.begin() + 150);
+  leaves.insert(leaves.end(), foreign.begin(), foreign.end());
+  EXPECT_LE(moved_behind(near, leaves, {{0, 169}}, leaves[169]), 2) << "behind no cut";
+  constexpr std::size_t frames = 4;  // of a keyframe
+  const Vectors slow = test::slowly(near, frames, 2);
+  EXPECT_LE(moved_behind(slow, slow, {{0, 600}}, somebody), 3 * frames) << "in a dense drive";
+}
+
 // Of one frame nobody can tell whether the map has its place. Without a map it is new.
 TEST(Keyframes, LetNoRobotThatIsSwitchedOnWhereItStandsBeNew) {
   const Vectors seen = test::way(1, 300, 0.3F, 2);

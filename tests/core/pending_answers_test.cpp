@@ -58,12 +58,9 @@ struct Passing {
   PendingAnswers pending{seen.memory.arena, config, lines};
 };
 
-/// Of a whole drive. @param rows that sequence search finds, by frame @param elsewhere as above
-std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
-                                       const std::vector<std::optional<std::size_t>>& rows,
-                                       double elsewhere = 0.0) {
-  Passing passing;
-  passing.elsewhere = elsewhere;
+/// Of a whole drive. @param rows that sequence search finds, by frame
+std::vector<Answer> answers_of(Passing& passing, const oracle::Vectors& query,
+                               const std::vector<std::optional<std::size_t>>& rows) {
   std::vector<Answer> answers;
   const auto take = [&](std::span<const Answer> some) {
     answers.insert(answers.end(), some.begin(), some.end());
@@ -73,6 +70,15 @@ std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
   passing.pending.answer(passing.seen.map, passing.steps, query.size() - 1, query.size());
   take(passing.pending.answers());
   return answers;
+}
+
+/// The same past a known way. @param elsewhere as `Passing` has it
+std::vector<Answer> answers_with_lines(const oracle::Vectors& query,
+                                       const std::vector<std::optional<std::size_t>>& rows,
+                                       double elsewhere = 0.0) {
+  Passing passing;
+  passing.elsewhere = elsewhere;
+  return answers_of(passing, query, rows);
 }
 
 TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
@@ -97,6 +103,52 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
                 static_cast<std::int64_t>(answer.frame) + place);
     }
     EXPECT_EQ(asked, 100U);
+  }
+}
+
+/// The line of one frame is four rows off. Where its window shows another place better, the lines
+/// of the frames beside it come first.
+TEST(PendingAnswers, NameTheRowByAWindowThatShowsNoOtherPlaceBetter) {
+  const oracle::Vectors query = test::way(1, 200, 0.3F, 2);
+  constexpr std::size_t asked = 100;
+  std::vector<std::optional<std::size_t>> rows;
+  for (std::size_t i = 0; i < query.size(); ++i) rows.emplace_back(i == asked ? i + 4 : i);
+  const auto place_where = [&](double elsewhere) {
+    Passing passing;
+    const std::size_t after = passing.lines.window() - 1 - passing.lines.centre();
+    std::optional<std::uint64_t> place;
+    for (std::size_t i = 0; i < query.size(); ++i) {
+      passing.elsewhere = i == asked + after ? elsewhere : 0.6;
+      for (const Answer& answer : passing.step(query[i], rows)) {
+        if (answer.frame == asked && answer.match) place = answer.match->place;
+      }
+    }
+    return place;
+  };
+  EXPECT_EQ(place_where(0.6), asked + 2) << "half way between its line and the trace";
+  EXPECT_EQ(place_where(0.4), asked);
+}
+
+/// Lines through another visit of the place that a trace goes through are its own.
+TEST(PendingAnswers, NameTheRowOfAnotherVisit) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  const oracle::Vectors query(known.begin(), known.begin() + 100);
+  std::vector<std::optional<std::size_t>> rows;
+  for (std::size_t i = 0; i < query.size(); ++i) rows.emplace_back(100 + i);
+  for (const bool one_place : {true, false}) {
+    SCOPED_TRACE(one_place);
+    Passing passing;
+    for (std::size_t i = 0; one_place && i < query.size(); ++i) passing.seen.map.link(100 + i, i);
+    std::size_t asked = 0;
+    for (const Answer& answer : answers_of(passing, query, rows)) {
+      if (answer.frame < 20 || answer.frame >= 80) continue;
+      ++asked;
+      ASSERT_TRUE(answer.match);
+      EXPECT_EQ(answer.gate == Gate::match, one_place);
+      EXPECT_EQ(answer.match->place, answer.frame + (one_place ? 100 : 0));
+      EXPECT_EQ(std::isnan(answer.match->score), !one_place);
+    }
+    EXPECT_EQ(asked, 60U);
   }
 }
 
@@ -208,6 +260,38 @@ TEST(PendingAnswers, AreNotSureOfTheLastFramesOfATraceAfterJumps) {
   };
   EXPECT_EQ(last_accepted({20, 80}), 0U) << "one way on";
   EXPECT_EQ(last_accepted({20, 120}), 2U) << "after a jump";
+}
+
+/// What lies behind the end of an earlier drive may look like what lies before it. One that is
+/// carried about comes to other rows anyway.
+TEST(PendingAnswers, AskForMoreBehindTheEndOfADrive) {
+  const oracle::Vectors known = test::way(1, 200, 0.3F, 2);
+  struct Asked {
+    double most = 0.0;   // of the last piece's frames
+    double jumps = 0.0;  // the chance of one then
+  };
+  const auto asked_after = [&](std::initializer_list<CandidateRun> pieces) {
+    Passing passing;
+    Asked asked;
+    for (const auto& [first, last] : pieces) {
+      asked = {};
+      for (std::size_t row = first; row < last; ++row) {
+        const double jumps = passing.pending.jumps();  // what the frame is judged by
+        static_cast<void>(passing.step(known[row], {}));
+        const std::optional<Evidence>& evidence = passing.pending.evidence();
+        if (evidence && evidence->asked > asked.most) asked = {evidence->asked, jumps};
+      }
+    }
+    return asked;
+  };
+  EXPECT_EQ(asked_after({{60, 140}, {20, 50}}).most, 0.0) << "in the middle of it";
+  EXPECT_EQ(asked_after({{60, 190}, {190, 200}}).most, 0.0) << "up to its end";
+  const Asked beyond = asked_after({{60, 200}, {20, 50}});
+  EXPECT_EQ(beyond.most, 2.2);
+  EXPECT_EQ(beyond.jumps, 0.0);
+  const Asked carried = asked_after({{20, 80}, {120, 200}, {20, 50}});
+  EXPECT_GT(carried.jumps, 0.01);
+  EXPECT_DOUBLE_EQ(carried.most, 2.2 * (1.0 - 10.0 * carried.jumps));
 }
 
 /// Which side of a jump a frame was on is known less well than where either side is.

@@ -679,6 +679,8 @@ TEST_F(BadInput, FlagsThatDoNothing) {
   }
   expect_refused("bench --only step --model a.onnx --topic /camera",
                  {"model: describing is not timed", "topic: it goes with a bag"});
+  expect_refused("bench --only step --n 0 --d 0",
+                 {"seqloop: n: 0 is not between", "seqloop: d: 0 is not between"});
   // A default that is written out is what happens anyway, and the contract's flags go with any
   // method.
   const test::Outcome outcome =

@@ -114,7 +114,11 @@ TEST_F(LastingMaps, ADiskThatIsFullStopsTheSavingAndNothingElse) {
   EXPECT_NE(full.err.find("not all of the drive is saved"), std::string::npos) << full.err;
   // Which frames it takes is up to the machine; a slow one may lose the last.
   EXPECT_NE(full.out.find("\"status\":\"ended\""), std::string::npos) << "the run went on";
-  // What had been saved is there, and the rest has room again.
+  // What had been saved is there, as many places as were told, and the rest has room again.
+  const std::string places = run("map info m.seqloop").out;
+  EXPECT_NE(full.err.find("the map has " + places.substr(0, places.find(" of ")) + " now"),
+            std::string::npos)
+      << full.err << places;
   expect_done("run --source again.npy --map m.seqloop --out l.jsonl");
 }
 

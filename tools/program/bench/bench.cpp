@@ -105,6 +105,8 @@ void bench(const BenchSettings& settings, const Peers& peers, Faults faults) {
     for (Fault& fault : validate(config)) faults.push_back(std::move(fault));
     for (const std::size_t places : settings.places) {
       for (Fault& fault : validate(Capacity{places, settings.descriptor_size}, config)) {
+        if (fault.what == "places") fault.what = "n";
+        if (fault.what == "descriptor_size") fault.what = "d";
         faults.push_back(std::move(fault));
       }
     }

@@ -187,7 +187,7 @@ class SqliteMap : public LastingMap {
 
   [[nodiscard]] std::string summary() const override {
     if (!writer_) return "the map has " + counted(map_->size(), "place") + "; it was only read";
-    std::size_t places = map_->size();
+    std::uint64_t places = map_->size() - writer_->lacking();
     std::string gone;
     for (const Retired& retired : writer_->retired()) {
       places -= retired.places;

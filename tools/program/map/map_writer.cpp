@@ -318,6 +318,15 @@ void MapWriter::save_once() {
   handing_.store(Handing::asked, std::memory_order_release);
 }
 
+std::uint64_t MapWriter::lacking() const noexcept {
+  std::uint64_t lacking = 0;
+  const std::uint64_t noted = places_noted_.load(std::memory_order_acquire);
+  for (std::uint64_t place = saved_places(); place < noted; ++place) {
+    if (added_[static_cast<std::size_t>(place % added_.size())].gone == none) ++lacking;
+  }
+  return lacking;
+}
+
 void MapWriter::read_newest(const SavedPlaceReader& read) {
   // The links first: their places are all noted then.
   const std::uint64_t links = links_noted_.load(std::memory_order_acquire);

@@ -65,6 +65,10 @@ class MapWriter {
     return saved_places_.load(std::memory_order_acquire);
   }
 
+  /// How many places fewer than the map the file has, once the drive is over: those that could not
+  /// be saved, less those that they were to take the room of. Work: one pass over the former.
+  [[nodiscard]] std::uint64_t lacking() const noexcept;
+
   /// Saves soon. From any thread but the loop's: it may wait. @return false once the drive is over
   bool save_now();
 
