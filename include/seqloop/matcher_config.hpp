@@ -86,7 +86,8 @@ struct Standardisation {
   }
 };
 
-/// Everything a detector can be told, with the paper's values (Table 2) where it has any.
+/// Everything a detector can be told, with the paper's values (Table 2) where it has any. Counts
+/// without another upper bound go to 1,000,000,000.
 struct MatcherConfig {
   Candidates candidates = Candidates::adaptive;
   Difference difference = Difference::euclidean;
@@ -135,10 +136,10 @@ struct MatcherConfig {
 
 /// What a detector and its map must have room for.
 struct Capacity {
-  std::size_t places = 0;  ///< rows of the map; 1 .. 2^32
+  std::size_t places = 0;  ///< rows of the map; 1 .. 2^32 - 1
   /// Values in a descriptor, D; 1 .. 2^22, to 2^17 where they are not kept as float32, or `scans`.
   std::size_t descriptor_size = 0;
-  /// Of the map, the running one too; 1 .. 2^32. One whose places have all gone counts as well.
+  /// Of the map, the running one too; 1 .. 2^32 - 1. One whose places have all gone counts as well.
   std::size_t sessions = 1;
 };
 

@@ -10,7 +10,8 @@
 namespace seqloop {
 
 /// What a set of training pictures has in common: their mean, and the directions in which they vary
-/// most; and pictures without those directions (Change Removal).
+/// most; and pictures without those directions (Change Removal). A library of its own: link
+/// `seqloop::principal_components`, or seqloop_principal_components before seqloop_core.
 class PrincipalComponents {
  public:
   static constexpr std::size_t most_pictures = 1'000;

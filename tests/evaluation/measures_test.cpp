@@ -74,6 +74,16 @@ TEST(CalibrationError, AgreesWithItsDefinition) {
   }
 }
 
+TEST(CalibrationError, HasABinThatBeginsWithEachTenthFloatOrDouble) {
+  std::vector<Answer> answers;
+  for (std::uint64_t tenth = 0; tenth < 10; ++tenth) {
+    const double probability = static_cast<double>(tenth) / 10.0;
+    answers.push_back(said(2 * tenth, probability, true));
+    answers.push_back(said(2 * tenth + 1, static_cast<float>(probability), true));
+  }
+  for (const ReliabilityBin& bin : measured(answers).reliability) EXPECT_EQ(bin.count, 2U);
+}
+
 TEST(CalibrationError, OfNoAnswersIsNotDefined) {
   for (const auto& answers :
        {std::vector<Answer>{}, std::vector{said(3, std::nan(""), true), Answer{4, 4, 0.5}}}) {

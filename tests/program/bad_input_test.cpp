@@ -190,8 +190,9 @@ TEST_F(BadInput, WhatIsWrongIsToldOnce) {
            {"describe --source good.npy --out d.npy --remove-components 5000 --training folder",
             "remove-components: 5000 is more than 999\n"},
            {"stills --source good.npy --out d --leave-out gaps.csv",
-            "leave-out: gaps.csv: no column 'from_s' in its header line\n"
-            "seqloop: leave-out: gaps.csv: no column 'to_s' in its header line\n"},
+            "leave-out: gaps.csv: no column 'from_s' in its header line; its columns are from, to\n"
+            "seqloop: leave-out: gaps.csv: no column 'to_s' in its header line; its columns are "
+            "from, to\n"},
        }) {
     expect_refused(arguments, {said});
     const std::string err = run(arguments).err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "program/run/source_numbers.hpp"
+#include "program/drives/source_numbers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -102,6 +102,19 @@ class Maps(unittest.TestCase):
         detector.step(self.again[0])  # its places are in memory
         self.assertEqual(file.read_bytes(), before)
 
+    def test_frames_that_never_came_are_counted(self) -> None:
+        with self.open(self.work / "map.seqloop", session="monday") as places:
+            detector = seqloop.Detector(places)
+            for row in self.drive[:100]:
+                detector.step(row)
+            detector.skip(300)
+            for row in self.drive[100:]:
+                newest = detector.step(row).newest
+            self.assertEqual(newest, 499)
+            self.assertEqual(detector.finish()[-1].frame, 499)
+            self.assertEqual([places.where(place) for place in (99, 100, 199)],
+                             [("monday", 99), ("monday", 400), ("monday", 499)])
+
     def test_where_places_are(self) -> None:
         file = self.work / "map.seqloop"
         for name in ("monday", "tuesday"):
@@ -184,7 +197,7 @@ class Maps(unittest.TestCase):
             with self.assertRaisesRegex(seqloop.SetupError, "kept in a file"):
                 places.add_drive(self.drive)
             detector = seqloop.Detector(places)
-            with self.assertRaisesRegex(seqloop.SetupError, "another detector"):
+            with self.assertRaisesRegex(seqloop.SetupError, "a detector has begun"):
                 seqloop.Detector(places)
             told = program("match", "--map", file, "--query", self.work / "again.npy", "--out", self.work / "o.csv",
                            check=False)

@@ -6,6 +6,7 @@ Wants PYTHONPATH, and in SEQLOOP_BINARY and SEQLOOP_STREET_BINARY the programs.
 import ast
 import copy
 import csv
+import dataclasses
 import json
 import os
 import pathlib
@@ -247,6 +248,7 @@ class Arrays(unittest.TestCase):
                 (lambda: seqloop.PlaceMap(200, 2**64), f"descriptor_size: {whole}, not as much as {2**64}"),
                 (lambda: seqloop.PlaceMap.open("m", 48, 2**63), f"max_places: {whole}, or None, not as much as"),
                 (lambda: self.detector.skip(2**64), f"frames: {whole} of 0 or more, not as much as {2**64}"),
+                (lambda: self.detector.skip(2**62), f"frames: {2**62} more are too many to be counted"),
                 (lambda: seqloop.PlaceMap(200, 48, "yes"), "close_loops: it must be True or False, not 'yes'"),
                 (lambda: seqloop.PlaceMap(200, 48, 3), "close_loops: it must be True or False, not 3"),
                 (lambda: seqloop.PlaceMap(200, 48, ds=rows[0]), "ds: a value of type list is not of its type"),
@@ -298,6 +300,32 @@ class Arrays(unittest.TestCase):
         frozen = self.query.copy()
         frozen.flags.writeable = False
         self.assertEqual(self.detector.step(frozen[3]).gate, "warming_up")
+
+    def test_frames_that_never_came_are_counted(self) -> None:
+        laps = numpy.concatenate([self.reference, self.query])
+        for close_loops in (False, True):
+            for lost in (3, 11, 60):  # the window is of ten frames
+                with self.subTest(close_loops=close_loops, lost=lost):
+                    places = seqloop.PlaceMap(400, 48, close_loops=close_loops, ds=10)
+                    if not close_loops:
+                        places.add_drive(laps)
+                    detector = seqloop.Detector(places)
+                    detector.skip(5)
+                    answers = []
+                    for frame in [*range(5, 50), *range(50 + lost, 400)]:
+                        if frame == 50 + lost:
+                            detector.skip(lost - 1)
+                            detector.skip(1)
+                        report = detector.step(laps[frame])
+                        self.assertEqual(report.newest, frame)
+                        answers += report.answers
+                    answers += detector.finish()
+                    self.assertEqual(answers[-1].frame, 399)
+                    # Behind the places that are missing where loops are closed.
+                    off = [answer.match.place - answer.frame + 200 * close_loops for answer in answers
+                           if answer.gate == "match" and answer.frame >= 320]
+                    self.assertGreater(len(off), 70)
+                    self.assertLessEqual(max(map(abs, off)), 1)
 
     def test_frames_that_say_nothing(self) -> None:
         broken = self.query[0].copy()
@@ -420,7 +448,7 @@ class Lives(unittest.TestCase):
         with self.assertRaisesRegex(seqloop.SetupError, "closing loops"):
             closing.add_drive(reference)
         seqloop.Detector(closing)
-        with self.assertRaisesRegex(seqloop.SetupError, "another detector"):
+        with self.assertRaisesRegex(seqloop.SetupError, "a detector has begun"):
             seqloop.Detector(closing)
         with self.assertRaises(seqloop.SetupError) as raised:
             seqloop.PlaceMap(-1, 0, ds=-1)
@@ -609,6 +637,27 @@ class SameAsTheProgram(unittest.TestCase):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.evaluate(**{"matches": matches, "truth": "identity", **settings})
         self.assertEqual(seqloop.evaluate(matches, "identity", frames=numpy.int64(7)).frames, 7)
+
+    def test_measures_refuse_what_is_no_match_list(self) -> None:
+        matches = seqloop.match(self.reference, self.query)
+        queries, ones = matches.query, numpy.ones(len(matches))
+        for columns, words in (
+                ({"query": 0 * queries}, "row 1: query 0 is answered twice; keep its best answer.*and .* more like"),
+                ({"query": queries - 1}, "row 0: a frame or a place is below 0; count them from 0"),
+                ({"match": -queries}, "row 1: a frame or a place is below 0"),
+                ({"probability": 2 * ones}, "row 0: its probability is 2; give 0 to 1, or NaN"),
+                ({"query": queries + .5}, r"matches.query: it is float64 of shape \(.*,\); give whole numbers"),
+                ({"score": None, "accepted": queries}, "score: it is NoneType.*accepted: it is int64"),
+                ({"match": queries[:3], "accepted": matches.accepted[:2]},
+                 "matches.match: it has 3 values and query has .*matches.accepted: it has 2 values"),
+                ({"probability": ones[:, None], "score": ones[:, None]}, "score: .* of shape.*probability: .* of")):
+            with self.assertRaisesRegex(seqloop.SetupError, "(?s)" + words):
+                seqloop.evaluate(dataclasses.replace(matches, **columns), "identity", threshold_on="score")
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.evaluate(dataclasses.replace(matches, probability=None), "identity", threshold_on="probability")
+        self.assertEqual(len(raised.exception.faults), 1)
+        silent = dataclasses.replace(matches, accepted=None, probability=numpy.nan * ones)
+        self.assertIsNone(seqloop.evaluate(silent, "identity").accepted)
 
     def test_matches_and_measures_equal_themselves(self) -> None:
         matches = seqloop.match(self.reference, self.query)

@@ -22,7 +22,10 @@ double ReliabilityBin::share_right() const noexcept {
 
 void add_answer(Reliability& reliability, double probability, bool right) noexcept {
   if (std::isnan(probability)) return;
-  const auto bin = static_cast<std::size_t>(probability * static_cast<double>(reliability_bins));
+  // As a float, of which there are nine digits in a match list: so .9 lies in the bin that begins
+  // with it, whether it was read from one or not.
+  const auto bin = static_cast<std::size_t>(static_cast<float>(probability) *
+                                            static_cast<float>(reliability_bins));
   ReliabilityBin& into = reliability[std::min(bin, reliability_bins - 1)];
   ++into.count;
   into.right += right ? 1U : 0U;

@@ -62,10 +62,10 @@ std::vector<std::string> cells(std::string_view line, const std::string& where) 
 }
 
 template <class Number>
-bool parse(const std::string& cell, Number& value) {
+std::errc parse(const std::string& cell, Number& value) {
   const char* end = cell.data() + cell.size();
   const auto result = std::from_chars(cell.data(), end, value);
-  return result.ec == std::errc() && result.ptr == end;
+  return result.ptr == end ? result.ec : std::errc::invalid_argument;
 }
 
 }  // namespace
@@ -87,8 +87,10 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
     try {
       std::vector<std::string> found = cells(line, where);
       if (found.size() != header_.size()) {
-        throw SetupError({where, fmt::format("{} under a header of {}",
-                                             counted(found.size(), "cell"), header_.size())});
+        throw SetupError(
+            {where,
+             fmt::format("{} under a header of {}", counted(found.size(), "cell"), header_.size()),
+             "write a cell for each column"});
       }
       lines_.back() = std::move(found);
     } catch (const SetupError& error) {
@@ -130,7 +132,11 @@ std::optional<std::size_t> CsvTable::find(std::string_view header) const noexcep
 
 std::size_t CsvTable::column(std::string_view header) const {
   if (const std::optional<std::size_t> found = find(header)) return *found;
-  throw SetupError({name_, "no column '" + std::string(header) + "' in its header line"});
+  constexpr std::size_t room = 100;
+  std::string remedy = fmt::format("its columns are {}", fmt::join(header_, ", "));
+  if (remedy.size() > room) remedy = "is this the right file?";
+  throw SetupError(
+      {name_, "no column '" + std::string(header) + "' in its header line", std::move(remedy)});
 }
 
 std::vector<std::size_t> CsvTable::columns(const std::vector<std::string>& headers) const {
@@ -198,7 +204,7 @@ std::string CsvRow::where() const { return table_->where(row_); }
 std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
   constexpr std::uint64_t most = std::uint64_t{1} << 62U;
   std::uint64_t value = 0;
-  if (!parse(lines_[row][column], value) || value > most) {
+  if (parse(lines_[row][column], value) != std::errc() || value > most) {
     refuse(row, column, "a whole number up to 2^62");
   }
   return value;
@@ -206,13 +212,17 @@ std::uint64_t CsvTable::whole(std::size_t row, std::size_t column) const {
 
 std::int64_t CsvTable::integer(std::size_t row, std::size_t column) const {
   std::int64_t value = 0;
-  if (!parse(lines_[row][column], value)) refuse(row, column, "a whole number");
+  if (parse(lines_[row][column], value) != std::errc()) refuse(row, column, "a whole number");
   return value;
 }
 
 double CsvTable::number(std::size_t row, std::size_t column) const {
   double value = 0.0;
-  if (!parse(lines_[row][column], value)) refuse(row, column, "a number");
+  const std::errc error = parse(lines_[row][column], value);
+  if (error == std::errc::result_out_of_range) {
+    refuse(row, column, "a number of a size that a double can have");
+  }
+  if (error != std::errc()) refuse(row, column, "a number");
   return value;
 }
 

@@ -18,6 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr auto keep_one = "keep its best answer";
+
 /// Answers, each to another query.
 class Answers {
  public:
@@ -48,7 +50,7 @@ std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) 
     }
     if (accepted) answer.accepted = row.flag(*accepted);
     if (!row.faults().empty()) return;
-    if (const auto wrong = answers.add(answer)) throw SetupError({row.where(), *wrong});
+    if (const auto wrong = answers.add(answer)) throw SetupError({row.where(), *wrong, keep_one});
   });
   return answers.take();
 }
@@ -70,7 +72,8 @@ class Lines {
 
  private:
   void add_all(const Json& json) {
-    if (!json.is_object()) return blame("is no JSON object");
+    if (!json.is_object())
+      return blame("is no JSON object", "leave whole lines of what `run` wrote");
     const auto several = json.find("answers");
     if (several == json.end()) return add(json);
     if (!several->is_array()) return blame("'answers' is no array");
@@ -97,7 +100,7 @@ class Lines {
       found.accepted = *status == "match";
     }
     if (!query || !match || faults_.size() > before) return;
-    if (const auto wrong = answers.add(found)) blame(*wrong);
+    if (const auto wrong = answers.add(found)) blame(*wrong, keep_one);
   }
 
   /// NaN where it is null.
@@ -128,7 +131,9 @@ class Lines {
     return null;
   }
 
-  void blame(std::string why) { faults_.push_back({where_, std::move(why)}); }
+  void blame(std::string why, std::string remedy = {}) {
+    faults_.push_back({where_, std::move(why), std::move(remedy)});
+  }
 
   std::string name_;
   std::string swept_;

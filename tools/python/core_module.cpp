@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/drives/source_numbers.hpp"
 #include "python/bindings.hpp"
 #include "python/interpreter_lock.hpp"
 #include "python/map.hpp"
@@ -41,6 +42,9 @@ class Stepper {
     const std::scoped_lock lock(map_->mutex());
     map_->claim();
     detector_.emplace(map_->config(), map_->places());
+    // Of a map in a file, places have numbers of their own.
+    const bool own_places = map_->config().use == Use::close_loops && map_->file() == nullptr;
+    numbers_.emplace(map_->config(), own_places ? &map_->places() : nullptr);
     map_->begin();
   }
 
@@ -64,15 +68,20 @@ class Stepper {
       program::LastingMap* const file = kept_on();
       if (map_->config().difference == Difference::euclidean) check_length(values);
       stepped_ = true;
-      report.report = detector_->step(values);
-      report.answers.assign(report.report.answers.begin(), report.report.answers.end());
+      const std::uint64_t frame = frames_++;
+      ProcessedFrame processed{};
+      processed.frame.index = frame;
+      processed.report = detector_->step(values);
       if (file != nullptr) {
-        const std::uint64_t frame = report.report.newest;
-        file->note(*detector_, frame, frame,
+        file->note(*detector_, processed.report.newest, frame,
                    time_s.value_or(static_cast<double>(frame) / frames_a_second), {},
-                   report.answers, !values.empty() && !blank(map_->config().difference, values));
+                   processed.report.answers,
+                   !values.empty() && !blank(map_->config().difference, values));
         trouble = file->trouble();
       }
+      numbers_->rename(processed);
+      report.report = processed.report;
+      report.answers.assign(report.report.answers.begin(), report.report.answers.end());
     }
     if (trouble) warn(*trouble);
     return report;
@@ -82,7 +91,13 @@ class Stepper {
     const Unlocked unlocked;
     const std::scoped_lock lock(guard());
     static_cast<void>(kept_on());
-    detector_->skip(frames);
+    const std::uint64_t count = frames;
+    if (count >= PlaceMap::number_end - frames_) {
+      throw SetupError({"frames", fmt::format("{} more are too many to be counted", count),
+                        "any number above ds is a gap"});
+    }
+    frames_ += count;
+    detector_->skip(count);
   }
 
   std::vector<Answer> finish() {
@@ -96,8 +111,9 @@ class Stepper {
         const std::span<const Answer> answers = detector_->finish();
         rest_.emplace(answers.begin(), answers.end());
       }
-      rest = *rest_;
-      if (file != nullptr) unsaved = file->finish(*detector_, rest);
+      if (file != nullptr) unsaved = file->finish(*detector_, *rest_);
+      const std::span<const Answer> renamed = numbers_->rename(*rest_);
+      rest.assign(renamed.begin(), renamed.end());
     }
     if (unsaved) {
       set_os_error(*unsaved);
@@ -160,6 +176,9 @@ class Stepper {
   std::shared_ptr<Map> map_;
   std::mutex mutex_;
   std::optional<Detector> detector_;  // always there
+  // Likewise. The detector leaves long gaps out.
+  std::optional<program::SourceNumbers> numbers_;
+  std::uint64_t frames_ = 0;  // that came, or never did
   bool stepped_ = false;
   std::optional<std::vector<Answer>> rest_;  // once the drive is over
 };
@@ -274,7 +293,10 @@ PYBIND11_MODULE(_core, module) {
            "second.\n"
            "Errors: SetupError for another shape, type or length; then nothing has changed.")
       .def("skip", outliving(&Stepper::skip), py::arg("frames"),
-           "Takes note of frames that never came: the camera lost them, or they were dropped.")
+           "Takes note of frames that never came: the camera lost them, or they were dropped.\n\n"
+           "They are counted: the next frame's number is higher by as many. Up to ds of them are\n"
+           "frames at which the scene stood still; with more, what was seen before says nothing\n"
+           "of now. Errors: SetupError for more than can be counted, 2^62 in all.")
       .def("finish", outliving(&Stepper::finish),
            "The recording is over: answers every frame that still waits.\n\n"
            "A map in a file has all of the drive then. OSError: not all could be saved; the same\n"

@@ -188,7 +188,7 @@ void Map::claim() {
   static_cast<void>(file());
   if (config_.use != Use::close_loops) return;
   if (claimed_) {
-    throw SetupError({"map", "another detector adds its drive to it", "make another map"});
+    throw SetupError({"map", "a detector has begun to add its drive to it", "make another map"});
   }
   claimed_ = true;
 }

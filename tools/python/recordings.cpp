@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "python/recordings.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "evaluation/line_faults.hpp"
 #include "evaluation/measures.hpp"
 #include "program/drives/match_drive.hpp"
 #include "program/drives/unit_rows.hpp"
@@ -16,6 +21,7 @@
 #include "program/options/truth_settings.hpp"
 #include "program/options/verb.hpp"
 #include "python/interpreter_lock.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::python {
 namespace {
@@ -88,7 +94,23 @@ py::dict match(const std::optional<Given>& reference, const std::optional<Given>
   return columns_of(matched);
 }
 
-/// The columns of `seqloop.Matches` that can be judged.
+/// A column of a match list. @param kinds of NumPy's types that fit   @param wanted in words
+template <class Value>
+py::array_t<Value> column_of(const py::object& matches, const char* name, std::string_view kinds,
+                             const char* wanted, evaluation::LineFaults& faults) {
+  const Array given = Array::ensure(matches.attr(name));
+  if (given && given.ndim() == 1 && kinds.find(given.dtype().kind()) != std::string_view::npos) {
+    return py::array_t<Value>(given);
+  }
+  const bool is_array = given && given.ndim() > 0;
+  const std::string is = is_array ? py::str(given.dtype()).cast<std::string>() + " of shape " +
+                                        py::str(given.attr("shape")).cast<std::string>()
+                                  : type_name(matches.attr(name));
+  faults.add({"matches." + std::string(name), "it is " + is, std::string("give ") + wanted});
+  return {};
+}
+
+/// Throws SetupError with all that `seqloop eval` would refuse in a match list, too.
 std::vector<evaluation::Answer> answers_of(const py::object& matches,
                                            const std::string& threshold_on,
                                            evaluation::ThresholdOn on) {
@@ -98,18 +120,55 @@ std::vector<evaluation::Answer> answers_of(const py::object& matches,
     throw SetupError({"matches", "its type is " + type_name(matches) + ", not seqloop.Matches",
                       "give what match returned; `seqloop eval --matches` reads match lists"});
   }
-  const py::array_t<std::int64_t> query(matches.attr("query"));
-  const py::array_t<std::int64_t> match(matches.attr("match"));
-  const py::array_t<double> threshold(matches.attr(threshold_on.c_str()));
-  const py::array_t<double> probability(matches.attr("probability"));
-  const auto accepted = matches.attr("accepted").cast<std::optional<py::array_t<bool>>>();
+  constexpr auto whole = "whole numbers, [M]";
+  constexpr auto numbers = "numbers, [M]";
+  evaluation::LineFaults faults("matches");
+  const auto query = column_of<std::int64_t>(matches, "query", "iu", whole, faults);
+  const auto match = column_of<std::int64_t>(matches, "match", "iu", whole, faults);
+  const auto threshold = column_of<double>(matches, threshold_on.c_str(), "fiu", numbers, faults);
+  const auto probability = on == evaluation::ThresholdOn::probability
+                               ? threshold
+                               : column_of<double>(matches, "probability", "fiu", numbers, faults);
+  std::optional<py::array_t<bool>> accepted;
+  if (!matches.attr("accepted").is_none()) {
+    accepted = column_of<bool>(matches, "accepted", "b", "booleans, [M], or None", faults);
+  }
+  faults.refuse();
+  const auto check_length = [&](const char* name, py::ssize_t length) {
+    if (length == query.size()) return;
+    faults.add({"matches." + std::string(name),
+                fmt::format("it has {} and query has {}",
+                            counted(static_cast<std::uint64_t>(length), "value"),
+                            static_cast<std::uint64_t>(query.size())),
+                "give one for each query"});
+  };
+  check_length("match", match.size());
+  check_length(threshold_on.c_str(), threshold.size());
+  if (probability.ptr() != threshold.ptr()) check_length("probability", probability.size());
+  if (accepted) check_length("accepted", accepted->size());
+  faults.refuse();
   std::vector<evaluation::Answer> answers;
+  std::set<std::int64_t> queries;
   for (py::ssize_t i = 0; i < query.size(); ++i) {
+    const double said = probability.at(i);
+    const auto blame = [&](std::string why, const char* remedy) {
+      faults.add({fmt::format("matches, row {}", i), std::move(why), remedy});
+    };
+    if (query.at(i) < 0 || match.at(i) < 0) {
+      blame("a frame or a place is below 0", "count them from 0");
+    }
+    if (said < 0.0 || said > 1.0) {
+      blame(fmt::format("its probability is {}", said), "give 0 to 1, or NaN");
+    }
+    if (!queries.insert(query.at(i)).second) {
+      blame(fmt::format("query {} is answered twice", query.at(i)), "keep its best answer");
+    }
     evaluation::Answer& answer = answers.emplace_back(evaluation::Answer{
         static_cast<std::uint64_t>(query.at(i)), static_cast<std::uint64_t>(match.at(i)),
-        evaluation::uncertainty(on, threshold.at(i)), probability.at(i)});
+        evaluation::uncertainty(on, threshold.at(i)), said});
     if (accepted) answer.accepted = accepted->at(i);
   }
+  faults.refuse();
   return answers;
 }
 

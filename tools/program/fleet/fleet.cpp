@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "program/drives/source_numbers.hpp"
 #include "program/fleet/fleet_talk.hpp"
 #include "program/fleet/others_map.hpp"
 #include "program/fleet/through_own.hpp"
 #include "program/run/frame_json.hpp"
-#include "program/run/source_numbers.hpp"
 #include "seqloop/detail/counted.hpp"
 
 namespace seqloop::program {

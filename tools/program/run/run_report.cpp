@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "program/run/run_report.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -37,17 +40,25 @@ Json budget_json(const Budget& budget) {
           {"match", milliseconds(budget.match)}};
 }
 
+/// The number that is written as a float is: .99, and not .9900000095.
+double as_written(float number) {
+  const std::string text = fmt::format("{}", number);
+  double same = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), same);
+  return same;
+}
+
 Json decision_json(const RunConditions& conditions) {
   const MatcherConfig& config = conditions.config;
   if (config.decision == Decision::uniqueness) {
-    return {{"by", "uniqueness"}, {"max_uniqueness", config.max_uniqueness}};
+    return {{"by", "uniqueness"}, {"max_uniqueness", as_written(config.max_uniqueness)}};
   }
   Json json{{"by", "probability"},
-            {"min_probability", config.min_probability},
+            {"min_probability", as_written(config.min_probability)},
             {"patience", config.patience}};
   for (const ThresholdChange& change : conditions.changes) {
     json["changes"].push_back(
-        {{"frame", change.frame}, {"min_probability", change.min_probability}});
+        {{"frame", change.frame}, {"min_probability", as_written(change.min_probability)}});
   }
   return json;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "program/drives/map_builder.hpp"
+#include "program/drives/source_numbers.hpp"
 #include "program/drives/warm_up.hpp"
 #include "program/fleet/fleet.hpp"
 #include "program/options/verb.hpp"
@@ -24,7 +25,6 @@
 #include "program/run/pictures.hpp"
 #include "program/run/run_report.hpp"
 #include "program/run/run_summary.hpp"
-#include "program/run/source_numbers.hpp"
 #include "program/run/trouble_log.hpp"
 #include "program/watch/ros_answers.hpp"
 #include "program/watch/serving.hpp"

@@ -33,8 +33,8 @@ given in place of a NumPy array, such as a list or a file's name. Other argument
 type, such as a string for a number of places, are TypeErrors, as are too few, too many, and those of
 a name that is none.
 
-Frames and places are counted from 0. Differences and scores are 0 to 2, lower is better;
-probabilities 0 to 1.
+Frames and places are counted from 0, frames that never came too. Differences and scores are 0 to 2
+between unit vectors, lower is better; probabilities 0 to 1.
 """
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Matches:
     match: Integers
     """The place: a row of the reference or, closing loops, of the query itself."""
     score: numpy.typing.NDArray[numpy.float32]
-    """Mean difference along the sequence, 0 to 2; lower is better. NaN: no line was found."""
+    """Mean difference along the sequence, 0 to 2 between unit vectors; lower is better. NaN: no line was found."""
     uniqueness: numpy.typing.NDArray[numpy.float32]
     """Score by the runner-up's; lower is better. NaN: not defined."""
     velocity: numpy.typing.NDArray[numpy.float64]
@@ -203,7 +203,8 @@ def evaluate(matches: Matches, truth: MapPath | Integers | None = None, *, thres
 
 
 def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.typing.NDArray[numpy.float32]:
-    """The difference matrix, [N, M]: how far each place (row) is from each frame (column), 0 to 2.
+    """The difference matrix, [N, M]: how far each place (row) is from each frame (column), 0 to 2
+    between unit vectors.
 
     By the same arithmetic as the matcher's, with standardised features unless standardise=False. A frame
     of the query that could not be read (NaN, infinity, zeros) repeats the column before it; before the first
