@@ -84,10 +84,9 @@ std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketch
   // The mean of e^z, which from one count of bits to the next falls by the same share.
   const double falls = exponential(-1.0 / (scanned_bits * scanned));
   double power = exponential((mean - static_cast<double>(likest) / scanned_bits) / scanned);
-  constexpr double highest = 160'000.0;  // about e^12: a few rows alike are no sign of the rest
   double exponentials = 0.0;
   for (std::size_t b = likest; b < end; ++b) {
-    exponentials += static_cast<double>(histogram_[b]) * std::min(power, highest);
+    exponentials += static_cast<double>(histogram_[b]) * power;
     power *= falls;
   }
   constexpr double above = 0.55;

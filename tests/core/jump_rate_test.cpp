@@ -88,6 +88,7 @@ TEST(JumpRate, IsNoneBetweenVisitsOfOnePlace) {
   for (std::size_t i = 0; i < 60; ++i) map.link(240 + i, 60 + i);
   EXPECT_FALSE(is_jump(map, 90, 272, 1)) << "the same place";
   EXPECT_FALSE(is_jump(map, 272, 90, 1)) << "and back";
+  EXPECT_FALSE(is_jump(map, 90, 270, 30)) << "it has stood there";
   EXPECT_TRUE(is_jump(map, 90, 350, 1)) << "a place of the second session alone";
   // Only where the drive has led on to is a visit, or where it came from.
   EXPECT_FALSE(is_jump(map, 40, 250, 30));

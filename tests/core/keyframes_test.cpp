@@ -494,6 +494,26 @@ std::int64_t moved_behind(const Vectors& known, const Vectors& seen,
   return place_at(test::way(8, 1, 0.3F, 1).front()) - before;
 }
 
+// One frame is all that is known of where it stands.
+TEST(Keyframes, AreNotSureOfTheNewestFrameWhereTheRobotStandsBehindACut) {
+  constexpr float nothing_kept = 0.0F;
+  const Vectors known = test::way(1, 300, 0.3F, 1, 256, nothing_kept);
+  const Vectors seen = test::way(1, 300, 0.3F, 2, 256, nothing_kept);
+  MatcherConfig config;
+  PlaceMap map = map_of(known, config);
+  Detector detector(config, map);
+  float now = 0.0F;
+  const auto take = [&](const std::vector<float>& descriptor) {
+    now = detector.step(descriptor).now.value().probability;
+  };
+  for (std::size_t i = 0; i < 150; ++i) take(seen[i]);
+  EXPECT_GT(now, 0.99F);
+  for (int i = 0; i < 10; ++i) {
+    take(seen[149]);
+    EXPECT_LE(now, 0.95F) << i;
+  }
+}
+
 // Somebody may stand before the camera of a robot that drives on.
 TEST(Keyframes, LetOnlyARobotThatMayBeHiddenDriveOnUnseen) {
   constexpr float nothing_kept = 0.0F;
@@ -557,6 +577,28 @@ TEST(Keyframes, TellWhichFrameOfAStopItWas) {
         << frame;
     told += frame > at && frame <= at + stop ? 1 : 0;
   }
+  EXPECT_EQ(told, stop);
+}
+
+// The same in one drive.
+TEST(Keyframes, TellWhichFrameOfItsOwnStopItWas) {
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 60;
+  constexpr std::size_t lap = 300 + stop;
+  Vectors laps = with_stop(test::way(1, 300, 0.3F, 1), at, stop);
+  const Vectors again = with_stop(test::way(1, 300, 0.3F, 2), at, stop);
+  laps.insert(laps.end(), again.begin(), again.end());
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  PlaceMap map(config, {laps.size(), laps.front().size()});
+  std::size_t told = 0;
+  for (const auto& [frame, answer] : answers_of(laps, config, map)) {
+    if (answer.gate != Gate::match) continue;
+    const std::uint64_t is = answer.match->frame() + lap;
+    EXPECT_LE(std::max(frame, is) - std::min(frame, is), 3U) << frame;
+    told += frame > lap + at && frame <= lap + at + stop ? 1 : 0;
+  }
+  EXPECT_EQ(map.stood(at), stop);
   EXPECT_EQ(told, stop);
 }
 

@@ -62,7 +62,7 @@ class NaiveBelief {
     const double sigma = std::sqrt(spread + noise(1024));
     double mean = 0.0;
     for (const double s : shares) {
-      mean += std::min(std::exp((mu - s) / std::sqrt(spread + noise(256))), 160'000.0) / n;
+      mean += std::exp((mu - s) / std::sqrt(spread + noise(256))) / n;
     }
     const double bias = std::log(mean) + 0.55;
     // 6.2

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/matcher.hpp"
+#include "core/seen.hpp"
 #include "core/ways.hpp"
 #include "seqloop/detail/evidence.hpp"
 
@@ -591,6 +592,37 @@ TEST(PlaceBelief, IsBornWhereTheBestLineLeadsIfItWasFoundLately) {
   EXPECT_GT(long_ago, lately + 400);
 }
 
+/// The places of one session have changed from a point on, those of a later one are new until
+/// shortly before it.
+TEST(PlaceBelief, VisitsOfOnePlaceShareHowTheRobotCame) {
+  constexpr std::size_t rows = 120;
+  for (const bool one_place : {true, false}) {
+    SCOPED_TRACE(one_place);
+    oracle::Vectors places = way(1, rows, 0.3F, 1);
+    std::ranges::copy(way(8, 60, 0.3F, 1), places.begin() + 60);
+    oracle::Vectors later = way(1, rows, 0.3F, 2);
+    std::ranges::copy(way(9, 45, 0.3F, 1), later.begin());
+    places.insert(places.end(), later.begin(), later.end());
+    const MatcherConfig config = settings(Use::localise);
+    Seen seen(places, config, rows);
+    for (std::size_t i = 0; one_place && i < rows; ++i) seen.map.link(rows + i, i);
+    PlaceBelief belief(seen.memory.arena, config);
+    constexpr double sure = 5.0;
+    double best = 0.0;
+    for (const auto& descriptor : way(1, 80, 0.3F, 3)) {
+      static_cast<void>(belief.observe(seen.take(descriptor), 0.0));
+      ASSERT_TRUE(belief.likeliest());
+      const bool earlier = belief.likeliest()->row < rows;
+      best = belief.remember(earlier ? sure : 0.0);
+    }
+    EXPECT_NEAR(static_cast<double>(belief.likeliest()->row), rows + 79.0, 2.0);
+    std::vector<BeliefTraces::Step> trace(PlaceBelief::depth(config));
+    trace.resize(belief.trace(belief.likeliest()->index, trace));
+    EXPECT_EQ(trace.size() >= 75, one_place) << trace.size();
+    EXPECT_EQ(best, one_place ? sure : 0.0);
+  }
+}
+
 TEST(PlaceBelief, ACoveredLensSaysNothing) {
   const oracle::Vectors reference = way(9, 300, 0.5F, 1);
   oracle::Vectors query = way(9, 300, 0.5F, 2);
@@ -664,14 +696,17 @@ TEST(PlaceBelief, ARobotThatStandsBehindALongCoverIsWhereItWas) {
   const oracle::Vectors reference = way(9, 120, 0.5F, 1);
   const oracle::Vectors query = way(9, 120, 0.5F, 2);
   const MatcherConfig config = settings(Use::localise);
-  for (const std::size_t at : {60U, 119U}) {
+  for (const auto& [at, covered] :
+       {std::pair<std::size_t, std::size_t>{60, 40}, {60, 300}, {119, 40}}) {
+    SCOPED_TRACE(std::to_string(at) + ", covered for " + std::to_string(covered));
     PlaceMap map = map_of(reference, config);
     Detector detector(config, map);
     take(detector, std::span(query).first(at + 1));
-    take(detector, oracle::Vectors(40));
+    take(detector, oracle::Vectors(covered));
     const auto now = detector.step(query[at]).now;
     ASSERT_TRUE(now);
-    EXPECT_LT(now->new_place, 0.1F) << at;
+    EXPECT_LT(now->new_place, 0.1F);
+    EXPECT_NEAR(static_cast<double>(now->place), static_cast<double>(at), 20.0);
     const std::size_t goes_to = std::min(at + 15, query.size() - 1);
     take(detector, std::span(query).first(goes_to).subspan(at + 1 < query.size() ? at + 1 : at));
     const auto later = detector.step(query[goes_to]).now;
