@@ -554,6 +554,89 @@ TEST_F(Experiments, KeepRunsOfAnyNameApart) {
   }
 }
 
+class DescribedElsewhere : public Experiments {
+ protected:
+  void SetUp() override {
+    Experiments::SetUp();
+    std::filesystem::create_directory(file("own"));
+    describe("a", "first");
+    describe("b", "second");
+  }
+
+  void describe(const std::string& source, const std::string& drive,
+                const std::string& flags = "") const {
+    const test::Outcome done =
+        run(fmt::format("describe --source {} --out own/{}.npy {}", source, drive, flags));
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+  }
+
+  static constexpr const char* own = R"(
+[[descriptor]]
+name = "own"
+described = "own"
+)";
+  static constexpr const char* method = R"(
+[[method]]
+name = "m"
+method = "seqcnnslam"
+descriptor = ["own", "gradients"]
+ds = 4
+)";
+};
+
+TEST_F(DescribedElsewhere, IsComparedLikeAnyOther) {
+  write_experiment(drives + std::string(pair) + own + method);
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 2U);
+  for (const char* same : {"places", "queries", "descriptor_size", "correct", "precision",
+                           "area_under_curve", "distances"}) {
+    EXPECT_EQ(table.number(0, table.column(same)), table.number(1, table.column(same))) << same;
+  }
+  EXPECT_GT(table.number(0, table.column("correct")), 30.0);
+  // What is described anew is matched anew.
+  describe("short", "second");
+  const test::Outcome shorter = run_it();
+  EXPECT_EQ(shorter.exit_code, 2);
+  EXPECT_NE(shorter.err.find("own/second.npy: it has 6 rows, and drive 'second' has 40 frames"),
+            std::string::npos)
+      << shorter.err;
+  describe("a", "first", "--descriptor patches");
+  describe("b", "second", "--descriptor patches");
+  expect_done();
+  const auto again = evaluation::CsvTable::read(file("out/results.csv"));
+  EXPECT_EQ(again.whole(0, again.column("descriptor_size")), 735U);
+  EXPECT_EQ(again.whole(1, again.column("descriptor_size")), 2048U);
+}
+
+TEST_F(DescribedElsewhere, NeedsNoPictures) {
+  const std::string no_pictures = "[[drive]]\nname = \"first\"\n[[drive]]\nname = \"second\"\n";
+  const std::string alone =
+      "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\ndescriptor = \"own\"\nds = 4\n";
+  write_experiment(no_pictures + pair + own + alone);
+  expect_done();
+  EXPECT_EQ(evaluation::CsvTable::read(file("out/results.csv")).rows(), 1U);
+  std::filesystem::remove_all(file("out"));
+  write_experiment(no_pictures + pair + "dark-below = 3\n" + own + alone);
+  expect_refused(
+      {"drive 'first' has no source, and pair 'both' wants its pictures; give a source"});
+  write_experiment(no_pictures + "[[descriptor]]\nname = \"gradients\"\n" + pair + own + method);
+  expect_refused({"drive 'first' has no source, and descriptor 'gradients' wants its pictures",
+                  "drive 'second' has no source"});
+}
+
+TEST_F(DescribedElsewhere, HasAllItsFaultsTold) {
+  describe("b", "second", "--descriptor patches");
+  write_experiment(drives + std::string(pair) + own + "model = \"net.onnx\"\n" + method);
+  expect_refused(
+      {"descriptor 'own' has been described elsewhere; leave out 'described', or all else",
+       "735 values in a row of drive 'first', 2048 in one of 'second'"});
+  folder_.write("own/first.npy", "nothing");
+  std::filesystem::remove(file("own/second.npy"));
+  write_experiment(drives + std::string(pair) + own + method);
+  expect_refused({"own/first.npy: is not a .npy file", "own/second.npy: does not exist"});
+}
+
 TEST_F(Experiments, LeaveDarkFramesOutAndSayHowMany) {
   for (int i = 20; i < 24; ++i) {
     folder_.write(fmt::format("a/{}.png", i),

@@ -10,9 +10,11 @@
 #include "experiment/run/fingerprint.hpp"
 #include "program/drives/describe_drive.hpp"
 #include "program/drives/known_length.hpp"
+#include "program/drives/unit_rows.hpp"
 #include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
+#include "seqloop/detail/counted.hpp"
 
 namespace seqloop::experiment {
 namespace {
@@ -50,6 +52,7 @@ std::unique_ptr<FrameSource> DescribedDrives::open(const std::string& drive) con
 void DescribedDrives::check(Faults& faults) {
   std::map<std::string, std::string> states;  // of drives
   for (const DriveSpec& drive : experiment_.drives) {
+    if (drive.source.empty()) continue;
     collect_at(drive.where, faults, [&] {
       std::unique_ptr<FrameSource> whole = open_whole(drive);
       const bool sure = program::known_length(*whole).has_value();
@@ -66,6 +69,7 @@ void DescribedDrives::check(Faults& faults) {
   std::vector<std::string> made_from(experiment_.descriptors.size());
   for (std::size_t i = 0; i < made_from.size(); ++i) {
     const DescriptorSpec& descriptor = experiment_.descriptors[i];
+    if (!descriptor.described.empty()) continue;
     collect_at(descriptor.where, faults, [&] {
       const program::DriveSettings& describer = descriptor.describer;
       program::check_describer(describer, !descriptor.training.empty());
@@ -77,8 +81,11 @@ void DescribedDrives::check(Faults& faults) {
       for (const std::string& name : descriptor.training) made_from[i] += states[name];
     });
   }
+  check_rows(wanted, faults);
+  check_pictures(wanted, faults);
   for (const Wanted& each : wanted) {
     const std::string& descriptor = experiment_.descriptors[each.descriptor].name;
+    if (files_.contains(each)) continue;
     const std::string all =
         program::program_state() + "\n" + states[each.drive] + "\n" + made_from[each.descriptor];
     files_[each] = folder_ / fmt::format("{}--{}--{}.npy", file_name(each.drive),
@@ -86,11 +93,76 @@ void DescribedDrives::check(Faults& faults) {
   }
 }
 
+std::size_t DescribedDrives::look_at(const Wanted& wanted) {
+  const std::filesystem::path file =
+      experiment_.descriptors[wanted.descriptor].described / (wanted.drive + ".npy");
+  files_[wanted] = file;
+  // Tells once what is not of unit length, too.
+  const files::Matrix rows = program::read_descriptors(file, Difference::euclidean);
+  const auto known = lengths_.find(wanted.drive);
+  if (known == lengths_.end()) {
+    lengths_[wanted.drive] = {rows.rows, true};
+  } else if (known->second.sure && known->second.frames != rows.rows) {
+    throw SetupError({file.string(),
+                      fmt::format("it has {}, and drive '{}' has {}", counted(rows.rows, "row"),
+                                  wanted.drive, counted(*known->second.frames, "frame")),
+                      "describe the same frames, one row each"});
+  }
+  return rows.columns;
+}
+
+/// Drives that are matched, and were described elsewhere, must have been described by the same.
+void DescribedDrives::check_rows(const std::set<Wanted>& wanted, Faults& faults) {
+  using Drives = std::map<std::size_t, std::string>;  // one for each number of values in a row
+  std::map<std::size_t, Drives> sizes;                // by descriptor
+  for (const Wanted& each : wanted) {
+    const DescriptorSpec& descriptor = experiment_.descriptors[each.descriptor];
+    if (descriptor.described.empty()) continue;
+    collect_at(descriptor.where, faults,
+               [&] { sizes[each.descriptor].emplace(look_at(each), each.drive); });
+  }
+  for (const auto& [index, drives] : sizes) {
+    if (drives.size() < 2) continue;
+    const auto& one = *drives.begin();
+    const auto& other = *drives.rbegin();
+    const DescriptorSpec& descriptor = experiment_.descriptors[index];
+    faults.push_back({descriptor.where,
+                      fmt::format("descriptor '{}': {} in a row of drive '{}', {} in one of '{}'",
+                                  descriptor.name, counted(one.first, "value"), one.second,
+                                  other.first, other.second),
+                      "describe all drives by the same"});
+  }
+}
+
+/// Only what was described elsewhere needs no pictures.
+void DescribedDrives::check_pictures(const std::set<Wanted>& wanted, Faults& faults) const {
+  std::set<std::string> told;
+  const auto want = [&](const std::string& name, const std::string& who) {
+    const DriveSpec& drive = experiment_.drive(name);
+    if (!drive.source.empty() || !told.insert(name).second) return;
+    faults.push_back({drive.where,
+                      fmt::format("drive '{}' has no source, and {} wants its pictures", name, who),
+                      "give a source, or a [[descriptor]] with 'described'"});
+  };
+  for (const Wanted& each : wanted) {
+    const DescriptorSpec& descriptor = experiment_.descriptors[each.descriptor];
+    const std::string who = "descriptor '" + descriptor.name + "'";
+    if (descriptor.described.empty()) want(each.drive, who);
+    for (const std::string& drive : descriptor.training) want(drive, who);
+  }
+  for (const PairSpec& pair : experiment_.pairs) {
+    if (!pair.leave_out) continue;
+    for (const std::string& drive : {pair.reference, pair.queries.front()}) {
+      want(drive, "pair '" + pair.name + "'");
+    }
+  }
+}
+
 std::vector<Job> DescribedDrives::jobs() const {
   std::vector<Job> jobs;
   for (const auto& [wanted, file] : files_) {
-    if (std::filesystem::exists(file)) continue;
     const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
+    if (!descriptor.described.empty() || std::filesystem::exists(file)) continue;
     std::string name = wanted.drive + " by " + descriptor.name;
     for (const Setting& setting : descriptor.swept)
       name += " " + setting.name + " " + setting.value;
@@ -116,6 +188,28 @@ std::uint64_t DescribedDrives::about(const std::string& drive) const {
 std::filesystem::path DescribedDrives::file(const std::string& drive,
                                             std::size_t descriptor) const {
   return files_.at({drive, descriptor});
+}
+
+std::string DescribedDrives::made_from(const std::string& drive, std::size_t descriptor) const {
+  const std::filesystem::path made = file(drive, descriptor);
+  if (experiment_.descriptors[descriptor].described.empty()) return made.filename().string();
+  return made.string() + state_of(made);
+}
+
+files::Matrix DescribedDrives::read(const std::string& drive, std::size_t descriptor,
+                                    Difference difference) const {
+  const std::filesystem::path made = file(drive, descriptor);
+  if (!experiment_.descriptors[descriptor].described.empty()) {
+    files::Matrix rows = files::read_npy(made);
+    if (difference == Difference::euclidean) program::normalise_rows(rows);
+    return rows;
+  }
+  try {
+    return files::read_npy(made);
+  } catch (const SetupError& error) {
+    throw SetupError({made.string(), error.faults().front().why,
+                      "delete it, and the same command makes it again"});
+  }
 }
 
 void DescribedDrives::describe(const Wanted& wanted) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -17,7 +18,7 @@
 namespace seqloop::experiment {
 
 /// The descriptors that an experiment needs, in a folder: each drive described by each descriptor
-/// that some run wants of it.
+/// that some run wants of it, but for those that were described elsewhere.
 class DescribedDrives {
  public:
   /// @param experiment lives longer
@@ -35,8 +36,15 @@ class DescribedDrives {
   /// Frames of a drive, more or less, for what work on it costs. After `check`.
   [[nodiscard]] std::uint64_t about(const std::string& drive) const;
 
-  /// Where the descriptors are, whose name tells what they were made from. After `check`.
+  /// Where the descriptors are. After `check`.
   [[nodiscard]] std::filesystem::path file(const std::string& drive, std::size_t descriptor) const;
+
+  /// What tells them from others. After `check`. Throws SetupError: they have gone.
+  [[nodiscard]] std::string made_from(const std::string& drive, std::size_t descriptor) const;
+
+  /// The descriptors. Throws SetupError: somebody damaged them.
+  [[nodiscard]] files::Matrix read(const std::string& drive, std::size_t descriptor,
+                                   Difference difference) const;
 
   /// The drive's frames. Throws SetupError.
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& drive) const;
@@ -59,6 +67,10 @@ class DescribedDrives {
   /// Before stills are taken of it. Throws SetupError.
   static std::unique_ptr<FrameSource> open_whole(const DriveSpec& spec);
 
+  /// Looks at what was described elsewhere. @return values in a row. Throws SetupError.
+  std::size_t look_at(const Wanted& wanted);
+  void check_rows(const std::set<Wanted>& wanted, Faults& faults);
+  void check_pictures(const std::set<Wanted>& wanted, Faults& faults) const;
   void describe(const Wanted& wanted) const;
 
   const Experiment& experiment_;

@@ -19,7 +19,8 @@
 
 namespace seqloop::experiment {
 
-/// `[[drive]]`: where pictures come from.
+/// `[[drive]]`: where pictures come from. Without a source it has none: all that is known of it has
+/// been described elsewhere.
 struct DriveSpec {
   std::string name;
   std::string where;  ///< FILE:LINE
@@ -29,10 +30,12 @@ struct DriveSpec {
   std::vector<Setting> settings;  ///< as written
 };
 
-/// `[[descriptor]]`: what describes them. One that sets a list of values becomes several.
+/// `[[descriptor]]`: what describes them, or a folder of what was described elsewhere. One that
+/// sets a list of values becomes several.
 struct DescriptorSpec {
   std::string name;
   std::string where;
+  std::filesystem::path described;  ///< a folder with NAME.npy of each drive; empty: it describes
   program::DriveSettings describer;
   std::vector<std::string> training;  ///< names of drives
   std::vector<Setting> settings;      ///< as written, this one's values

@@ -115,7 +115,6 @@ class Reader {
     if (!(drive.fps >= 1e-3 && drive.fps <= 1e6)) {
       section.refuse("'fps' must be between 0.001 and 1000000");
     }
-    if (drive.source.empty()) section.refuse("drive '" + drive.name + "' has no source");
     find(drive.source);
     for (const Fault& fault : validate(drive.stills)) {
       section.refuse(fault.what + ": " + fault.why, fault.remedy);
@@ -151,9 +150,17 @@ class Reader {
     if (section.has("fps")) section.refuse("'fps' belongs to a [[drive]]");
     if (section.has("topic"))
       section.refuse("'topic' chooses nothing in an experiment", "give bags with one topic only");
-    const auto written = section.written(known, {"name", "training", "fps", "topic"});
+    const Names described = section.names("described");
+    if (described.size() > 1) section.refuse("'described' is one folder");
+    const auto written = section.written(known, {"name", "training", "fps", "topic", "described"});
+    if (!described.empty() && !(written.empty() && training.empty())) {
+      section.refuse("descriptor '" + name + "' has been described elsewhere",
+                     "leave out 'described', or all else but its name");
+    }
     for (const std::vector<Setting>& chosen : section.combinations(written)) {
-      DescriptorSpec descriptor{name, section.where(), {}, training, chosen, {}};
+      DescriptorSpec descriptor{name, section.where(), {}, {}, training, chosen, {}};
+      if (!described.empty()) descriptor.described = described.front();
+      find(descriptor.described);
       OptionTable options;
       add_drive_options(options, descriptor.describer);
       section.set(options, written, chosen);

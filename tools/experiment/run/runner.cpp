@@ -33,16 +33,6 @@
 namespace seqloop::experiment {
 namespace {
 
-/// Descriptors that were kept. Throws SetupError: somebody damaged them.
-files::Matrix read_kept(const std::filesystem::path& file) {
-  try {
-    return files::read_npy(file);
-  } catch (const SetupError& error) {
-    throw SetupError({file.string(), error.faults().front().why,
-                      "delete it, and the same command makes it again"});
-  }
-}
-
 /// Whether a folder is new, empty, or an experiment's already.
 bool may_be_filled(const std::filesystem::path& folder) {
   const auto page = folder / "index.html";
@@ -256,7 +246,7 @@ class Runner {
   [[nodiscard]] DescribedPair read(const RunSpec& run) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
     const auto read_drive = [&](const std::string& drive) {
-      files::Matrix rows = read_kept(drives_.file(drive, run.descriptor));
+      files::Matrix rows = drives_.read(drive, run.descriptor, run.config.difference);
       const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
       if (!kept) return rows;
       for (std::size_t i = 0; i < kept->frames.size(); ++i) {
@@ -294,10 +284,10 @@ class Runner {
                                   experiment_.timed ? "timed" : "",
                                   std::to_string(static_cast<int>(run.threshold_on))};
     for (const std::string& query : pair.queries) {
-      from.push_back(drives_.file(query, run.descriptor).filename().string());
+      from.push_back(drives_.made_from(query, run.descriptor));
     }
     if (!pair.reference.empty()) {
-      from.push_back(drives_.file(pair.reference, run.descriptor).filename().string());
+      from.push_back(drives_.made_from(pair.reference, run.descriptor));
     }
     if (by_file(pair.truth)) {
       from.push_back(state_of(pair.truth.file));
