@@ -609,6 +609,27 @@ TEST_F(DescribedElsewhere, IsComparedLikeAnyOther) {
   EXPECT_EQ(again.whole(1, again.column("descriptor_size")), 2048U);
 }
 
+TEST_F(DescribedElsewhere, IsKeptByItsNameAndThePicturesThatItIsOf) {
+  const std::string mine = "[[descriptor]]\nname = \"mine\"\ndescribed = \"own\"\n";
+  const std::string both =
+      "[[method]]\nname = \"m\"\nmethod = \"seqcnnslam\"\ndescriptor = [\"own\", \"mine\"]\nds = "
+      "4\n";
+  write_experiment(drives + std::string(pair) + "dark-below = 30\n" + own + mine + both);
+  expect_done();
+  const auto table = evaluation::CsvTable::read(file("out/results.csv"));
+  ASSERT_EQ(table.rows(), 2U);
+  EXPECT_NE(test::read_all(file("out/results.csv")).find(",mine,"), std::string::npos);
+  EXPECT_NE(test::read_all(file("out/results.csv")).find(",own,"), std::string::npos);
+  EXPECT_EQ(table.whole(0, table.column("queries")), 40U);
+  for (int i = 20; i < 24; ++i) {
+    folder_.write(fmt::format("b/{}.png", i),
+                  test::encoded(cv::Mat(32, 64, CV_8UC3, cv::Scalar::all(3)), ".png"));
+  }
+  expect_done();
+  const auto darker = evaluation::CsvTable::read(file("out/results.csv"));
+  EXPECT_EQ(darker.whole(0, darker.column("queries")), 36U);
+}
+
 TEST_F(DescribedElsewhere, NeedsNoPictures) {
   const std::string no_pictures = "[[drive]]\nname = \"first\"\n[[drive]]\nname = \"second\"\n";
   const std::string alone =
@@ -631,6 +652,16 @@ TEST_F(DescribedElsewhere, HasAllItsFaultsTold) {
   expect_refused(
       {"descriptor 'own' has been described elsewhere; leave out 'described', or all else",
        "735 values in a row of drive 'first', 2048 in one of 'second'"});
+  write_experiment(
+      "[[drive]]\nname = \"first\"\n[[pair]]\nname = \"p\"\nquery = \"first\"\n"
+      "truth = \"no-revisit\"\ndark-below = 3\n" +
+      std::string(own) + "[[descriptor]]\nname = \"gradients\"\ndescribed = \"\"\n" +
+      "[[descriptor]]\nname = \"none\"\ndescribed = \"nowhere\"\n"
+      "[[drive]]\nname = \"idle\"\n[[drive]]\nname = \"set\"\nfps = 3\n" +
+      method);
+  expect_refused({"leaves frames out, which wants two drives", "'described': its value is empty",
+                  "nowhere is no folder", "drive 'idle' has no source\n",
+                  "drive 'set' has no source, which the rest is about"});
   folder_.write("own/first.npy", "nothing");
   std::filesystem::remove(file("own/second.npy"));
   write_experiment(drives + std::string(pair) + own + method);

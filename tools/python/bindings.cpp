@@ -176,10 +176,21 @@ std::string shown(const py::handle& value) {
   return brief ? text : "a value of type " + type_name(value);
 }
 
+bool is_masked(const py::handle& value) {
+  return py::isinstance<Array>(value) && py::hasattr(value, "mask") &&
+         value.attr("mask").attr("any")().cast<bool>();
+}
+
 Array array_of(const Given& given, const std::string& name, const std::string& type,
                const std::string& reading) {
   const py::object& value = given.value;
-  if (py::isinstance<Array>(value)) return py::reinterpret_borrow<Array>(value);
+  if (py::isinstance<Array>(value)) {
+    if (is_masked(value)) {
+      throw SetupError({name, "some of it is masked, and would count all the same",
+                        "leave those rows out, or give None for such a frame"});
+    }
+    return py::reinterpret_borrow<Array>(value);
+  }
   if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) {
     const py::object path = py::module_::import("os").attr("fspath")(value);
     throw SetupError(

@@ -110,6 +110,9 @@ template <class Settings>
 /// Text of a file, in which what is no UTF-8 becomes U+FFFD.
 [[nodiscard]] pybind11::str readable(std::string_view text);
 
+/// Whether some values of an array are masked, as numpy.ma has it: here they would count.
+[[nodiscard]] bool is_masked(const pybind11::handle& value);
+
 /// A tuple (what, why, remedy) for each fault, flags spelt as keyword arguments.
 [[nodiscard]] pybind11::list listed(const Faults& faults);
 

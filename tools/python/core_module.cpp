@@ -34,6 +34,7 @@ constexpr double frames_a_second = 10.0;
 
 // A map in a file has nanoseconds, in 64 bits.
 constexpr double most_seconds = 9.2e9;
+constexpr auto most_frames = static_cast<std::uint64_t>(most_seconds * frames_a_second);
 
 class Stepper {
  public:
@@ -67,6 +68,7 @@ class Stepper {
       const std::scoped_lock lock(guard());
       program::LastingMap* const file = kept_on();
       if (map_->config().difference == Difference::euclidean) check_length(values);
+      skip_what_never_came();
       stepped_ = true;
       const std::uint64_t frame = frames_++;
       ProcessedFrame processed{};
@@ -92,12 +94,12 @@ class Stepper {
     const std::scoped_lock lock(guard());
     static_cast<void>(kept_on());
     const std::uint64_t count = frames;
-    if (count >= PlaceMap::number_end - frames_) {
+    if (count > most_frames || frames_ + count > most_frames) {
       throw SetupError({"frames", fmt::format("{} more are too many to be counted", count),
                         "any number above ds is a gap"});
     }
     frames_ += count;
-    detector_->skip(count);
+    never_came_ += count;
   }
 
   std::vector<Answer> finish() {
@@ -108,6 +110,7 @@ class Stepper {
       const std::scoped_lock lock(guard());
       program::LastingMap* const file = kept();
       if (file == nullptr || !rest_) {
+        skip_what_never_came();
         const std::span<const Answer> answers = detector_->finish();
         rest_.emplace(answers.begin(), answers.end());
       }
@@ -139,6 +142,9 @@ class Stepper {
   }
 
  private:
+  /// All at once: of a long gap the detector counts none, of a short one each.
+  void skip_what_never_came() noexcept { detector_->skip(std::exchange(never_came_, 0)); }
+
   /// A detector that closes loops changes its map.
   [[nodiscard]] std::mutex& guard() noexcept {
     return map_->config().use == Use::close_loops ? map_->mutex() : mutex_;
@@ -178,7 +184,8 @@ class Stepper {
   std::optional<Detector> detector_;  // always there
   // Likewise. The detector leaves long gaps out.
   std::optional<program::SourceNumbers> numbers_;
-  std::uint64_t frames_ = 0;  // that came, or never did
+  std::uint64_t frames_ = 0;      // that came, or never did
+  std::uint64_t never_came_ = 0;  // since the last that did
   bool stepped_ = false;
   std::optional<std::vector<Answer>> rest_;  // once the drive is over
 };
@@ -259,7 +266,8 @@ PYBIND11_MODULE(_core, module) {
           "the place is forgotten. Errors: SetupError.")
       .def_property_readonly("saved", &Map::saved,
                              "Frames of this drive, from the first on, that are on the disk for\n"
-                             "good. Errors: SetupError where the map is in no file.")
+                             "good; those of gaps of more than ds are not among them. Errors:\n"
+                             "SetupError where the map is in no file.")
       .def("close", &Map::close,
            "Closes the file. What was stepped through since the last save, and not finished, is\n"
            "lost. A map in memory alone stays as it is.")
@@ -296,7 +304,7 @@ PYBIND11_MODULE(_core, module) {
            "Takes note of frames that never came: the camera lost them, or they were dropped.\n\n"
            "They are counted: the next frame's number is higher by as many. Up to ds of them are\n"
            "frames at which the scene stood still; with more, what was seen before says nothing\n"
-           "of now. Errors: SetupError for more than can be counted, 2^62 in all.")
+           "of now. Errors: SetupError for more than can be counted, 92,000,000,000 in all.")
       .def("finish", outliving(&Stepper::finish),
            "The recording is over: answers every frame that still waits.\n\n"
            "A map in a file has all of the drive then. OSError: not all could be saved; the same\n"
@@ -304,7 +312,9 @@ PYBIND11_MODULE(_core, module) {
       .def("newest_column", outliving(&Stepper::newest_column),
            "The newest frame's column of the difference matrix, float32 [N]: NaN where nothing\n"
            "was computed, which is nearly everywhere unless all rows are candidates\n"
-           "(method=\"seqcnnslam\"). Errors: SetupError before the first step.");
+           "(method=\"seqcnnslam\"). Closing loops, frames that became no places have no row, so "
+           "that\n"
+           "rows are not the numbers of places. Errors: SetupError before the first step.");
 
   seqloop::python::add_recordings(module);
   seqloop::python::add_map_files(module);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -98,14 +99,17 @@ py::dict match(const std::optional<Given>& reference, const std::optional<Given>
 template <class Value>
 py::array_t<Value> column_of(const py::object& matches, const char* name, std::string_view kinds,
                              const char* wanted, evaluation::LineFaults& faults) {
-  const Array given = Array::ensure(matches.attr(name));
-  if (given && given.ndim() == 1 && kinds.find(given.dtype().kind()) != std::string_view::npos) {
-    return py::array_t<Value>(given);
-  }
+  const py::object column = matches.attr(name);
+  const Array given = Array::ensure(column);
+  const bool fits = given && given.ndim() == 1 && !is_masked(column) &&
+                    kinds.find(given.dtype().kind()) != std::string_view::npos;
+  // Nothing has any type.
+  if (fits || (given && given.ndim() == 1 && given.size() == 0)) return py::array_t<Value>(given);
   const bool is_array = given && given.ndim() > 0;
   const std::string is = is_array ? py::str(given.dtype()).cast<std::string>() + " of shape " +
-                                        py::str(given.attr("shape")).cast<std::string>()
-                                  : type_name(matches.attr(name));
+                                        py::str(given.attr("shape")).cast<std::string>() +
+                                        (is_masked(column) ? ", and partly masked" : "")
+                                  : type_name(column);
   faults.add({"matches." + std::string(name), "it is " + is, std::string("give ") + wanted});
   return {};
 }
@@ -121,14 +125,19 @@ std::vector<evaluation::Answer> answers_of(const py::object& matches,
                       "give what match returned; `seqloop eval --matches` reads match lists"});
   }
   constexpr auto whole = "whole numbers, [M]";
+  constexpr auto most_number = std::int64_t{1} << 62U;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr auto numbers = "numbers, [M]";
   evaluation::LineFaults faults("matches");
   const auto query = column_of<std::int64_t>(matches, "query", "iu", whole, faults);
   const auto match = column_of<std::int64_t>(matches, "match", "iu", whole, faults);
   const auto threshold = column_of<double>(matches, threshold_on.c_str(), "fiu", numbers, faults);
-  const auto probability = on == evaluation::ThresholdOn::probability
-                               ? threshold
-                               : column_of<double>(matches, "probability", "fiu", numbers, faults);
+  std::optional<py::array_t<double>> probability;
+  if (on == evaluation::ThresholdOn::probability) {
+    probability = threshold;
+  } else if (!matches.attr("probability").is_none()) {
+    probability = column_of<double>(matches, "probability", "fiu", "numbers, [M], or None", faults);
+  }
   std::optional<py::array_t<bool>> accepted;
   if (!matches.attr("accepted").is_none()) {
     accepted = column_of<bool>(matches, "accepted", "b", "booleans, [M], or None", faults);
@@ -143,19 +152,22 @@ std::vector<evaluation::Answer> answers_of(const py::object& matches,
                 "give one for each query"});
   };
   check_length("match", match.size());
-  check_length(threshold_on.c_str(), threshold.size());
-  if (probability.ptr() != threshold.ptr()) check_length("probability", probability.size());
+  if (on != evaluation::ThresholdOn::probability) {
+    check_length(threshold_on.c_str(), threshold.size());
+  }
+  if (probability) check_length("probability", probability->size());
   if (accepted) check_length("accepted", accepted->size());
   faults.refuse();
   std::vector<evaluation::Answer> answers;
   std::set<std::int64_t> queries;
   for (py::ssize_t i = 0; i < query.size(); ++i) {
-    const double said = probability.at(i);
+    const double said = probability ? probability->at(i) : nan;
     const auto blame = [&](std::string why, const char* remedy) {
       faults.add({fmt::format("matches, row {}", i), std::move(why), remedy});
     };
-    if (query.at(i) < 0 || match.at(i) < 0) {
-      blame("a frame or a place is below 0", "count them from 0");
+    const auto [least, most] = std::minmax(query.at(i), match.at(i));
+    if (least < 0 || most > most_number) {
+      blame("a frame or a place is below 0, or above 2^62", "count them from 0");
     }
     if (said < 0.0 || said > 1.0) {
       blame(fmt::format("its probability is {}", said), "give 0 to 1, or NaN");

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "program/drives/describe_drive.hpp"
 #include "program/drives/known_length.hpp"
 #include "program/drives/unit_rows.hpp"
+#include "program/options/flag_names.hpp"
 #include "program/options/model_options.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
@@ -69,7 +71,13 @@ void DescribedDrives::check(Faults& faults) {
   std::vector<std::string> made_from(experiment_.descriptors.size());
   for (std::size_t i = 0; i < made_from.size(); ++i) {
     const DescriptorSpec& descriptor = experiment_.descriptors[i];
-    if (!descriptor.described.empty()) continue;
+    if (!descriptor.described.empty()) {
+      std::error_code error;
+      if (std::filesystem::is_directory(descriptor.described, error)) continue;
+      faults.push_back({descriptor.where, descriptor.described.string() + " is no folder",
+                        "name one with a file DRIVE.npy for each drive"});
+      continue;
+    }
     collect_at(descriptor.where, faults, [&] {
       const program::DriveSettings& describer = descriptor.describer;
       program::check_describer(describer, !descriptor.training.empty());
@@ -81,22 +89,23 @@ void DescribedDrives::check(Faults& faults) {
       for (const std::string& name : descriptor.training) made_from[i] += states[name];
     });
   }
-  check_rows(wanted, faults);
+  check_rows(wanted, states, faults);
   check_pictures(wanted, faults);
   for (const Wanted& each : wanted) {
     const std::string& descriptor = experiment_.descriptors[each.descriptor].name;
     if (files_.contains(each)) continue;
     const std::string all =
         program::program_state() + "\n" + states[each.drive] + "\n" + made_from[each.descriptor];
-    files_[each] = folder_ / fmt::format("{}--{}--{}.npy", file_name(each.drive),
+    const std::string name = fmt::format("{}--{}--{}.npy", file_name(each.drive),
                                          file_name(descriptor), fingerprint(all));
+    files_[each] = {folder_ / name, name};
   }
 }
 
-std::size_t DescribedDrives::look_at(const Wanted& wanted) {
-  const std::filesystem::path file =
-      experiment_.descriptors[wanted.descriptor].described / (wanted.drive + ".npy");
-  files_[wanted] = file;
+std::size_t DescribedDrives::look_at(const Wanted& wanted, const std::string& pictures) {
+  const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
+  const std::filesystem::path file = descriptor.described / (wanted.drive + ".npy");
+  files_[wanted] = {file, {}};
   // Tells once what is not of unit length, too.
   const files::Matrix rows = program::read_descriptors(file, Difference::euclidean);
   const auto known = lengths_.find(wanted.drive);
@@ -108,24 +117,39 @@ std::size_t DescribedDrives::look_at(const Wanted& wanted) {
                                   wanted.drive, counted(*known->second.frames, "frame")),
                       "describe the same frames, one row each"});
   }
+  files_[wanted].made_from =
+      fmt::format("{}\n{}{}\n{}", descriptor.name, file.string(), state_of(file), pictures);
   return rows.columns;
 }
 
 /// Drives that are matched, and were described elsewhere, must have been described by the same.
-void DescribedDrives::check_rows(const std::set<Wanted>& wanted, Faults& faults) {
+void DescribedDrives::check_rows(const std::set<Wanted>& wanted,
+                                 std::map<std::string, std::string>& states, Faults& faults) {
   using Drives = std::map<std::size_t, std::string>;  // one for each number of values in a row
   std::map<std::size_t, Drives> sizes;                // by descriptor
   for (const Wanted& each : wanted) {
     const DescriptorSpec& descriptor = experiment_.descriptors[each.descriptor];
     if (descriptor.described.empty()) continue;
-    collect_at(descriptor.where, faults,
-               [&] { sizes[each.descriptor].emplace(look_at(each), each.drive); });
+    collect_at(descriptor.where, faults, [&] {
+      const std::size_t values = look_at(each, states[each.drive]);
+      sizes[each.descriptor].emplace(values, each.drive);
+    });
   }
   for (const auto& [index, drives] : sizes) {
-    if (drives.size() < 2) continue;
     const auto& one = *drives.begin();
     const auto& other = *drives.rbegin();
     const DescriptorSpec& descriptor = experiment_.descriptors[index];
+    for (const RunSpec& run : experiment_.runs) {
+      if (run.descriptor != index) continue;
+      Faults found = validate(Capacity{1, other.first}, run.config);
+      if (found.empty()) continue;
+      for (Fault& fault : found) {
+        fault = program::in_flags(std::move(fault));
+        faults.push_back({descriptor.where, fault.what + ": " + fault.why, fault.remedy});
+      }
+      break;
+    }
+    if (drives.size() < 2) continue;
     faults.push_back({descriptor.where,
                       fmt::format("descriptor '{}': {} in a row of drive '{}', {} in one of '{}'",
                                   descriptor.name, counted(one.first, "value"), one.second,
@@ -150,8 +174,18 @@ void DescribedDrives::check_pictures(const std::set<Wanted>& wanted, Faults& fau
     if (descriptor.described.empty()) want(each.drive, who);
     for (const std::string& drive : descriptor.training) want(drive, who);
   }
+  for (const DriveSpec& drive : experiment_.drives) {
+    const bool known =
+        !drive.source.empty() || lengths_.contains(drive.name) || told.contains(drive.name);
+    if (known ||
+        std::ranges::any_of(wanted, [&](const Wanted& of) { return of.drive == drive.name; }))
+      continue;
+    faults.push_back({drive.where, "drive '" + drive.name + "' has no source"});
+  }
   for (const PairSpec& pair : experiment_.pairs) {
     if (!pair.leave_out) continue;
+    // One that closes loops is refused.
+    if (pair.reference.empty()) continue;
     for (const std::string& drive : {pair.reference, pair.queries.front()}) {
       want(drive, "pair '" + pair.name + "'");
     }
@@ -160,9 +194,9 @@ void DescribedDrives::check_pictures(const std::set<Wanted>& wanted, Faults& fau
 
 std::vector<Job> DescribedDrives::jobs() const {
   std::vector<Job> jobs;
-  for (const auto& [wanted, file] : files_) {
+  for (const auto& [wanted, made] : files_) {
     const DescriptorSpec& descriptor = experiment_.descriptors[wanted.descriptor];
-    if (!descriptor.described.empty() || std::filesystem::exists(file)) continue;
+    if (!descriptor.described.empty() || std::filesystem::exists(made.file)) continue;
     std::string name = wanted.drive + " by " + descriptor.name;
     for (const Setting& setting : descriptor.swept)
       name += " " + setting.name + " " + setting.value;
@@ -187,21 +221,19 @@ std::uint64_t DescribedDrives::about(const std::string& drive) const {
 
 std::filesystem::path DescribedDrives::file(const std::string& drive,
                                             std::size_t descriptor) const {
-  return files_.at({drive, descriptor});
+  return files_.at({drive, descriptor}).file;
 }
 
-std::string DescribedDrives::made_from(const std::string& drive, std::size_t descriptor) const {
-  const std::filesystem::path made = file(drive, descriptor);
-  if (experiment_.descriptors[descriptor].described.empty()) return made.filename().string();
-  return made.string() + state_of(made);
+const std::string& DescribedDrives::made_from(const std::string& drive,
+                                              std::size_t descriptor) const {
+  return files_.at({drive, descriptor}).made_from;
 }
 
-files::Matrix DescribedDrives::read(const std::string& drive, std::size_t descriptor,
-                                    Difference difference) const {
+files::Matrix DescribedDrives::read(const std::string& drive, std::size_t descriptor) const {
   const std::filesystem::path made = file(drive, descriptor);
   if (!experiment_.descriptors[descriptor].described.empty()) {
     files::Matrix rows = files::read_npy(made);
-    if (difference == Difference::euclidean) program::normalise_rows(rows);
+    program::normalise_rows(rows);
     return rows;
   }
   try {

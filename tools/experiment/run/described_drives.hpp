@@ -39,12 +39,12 @@ class DescribedDrives {
   /// Where the descriptors are. After `check`.
   [[nodiscard]] std::filesystem::path file(const std::string& drive, std::size_t descriptor) const;
 
-  /// What tells them from others. After `check`. Throws SetupError: they have gone.
-  [[nodiscard]] std::string made_from(const std::string& drive, std::size_t descriptor) const;
+  /// What tells them from others, and the drive's pictures, as they were in `check`.
+  [[nodiscard]] const std::string& made_from(const std::string& drive,
+                                             std::size_t descriptor) const;
 
   /// The descriptors. Throws SetupError: somebody damaged them.
-  [[nodiscard]] files::Matrix read(const std::string& drive, std::size_t descriptor,
-                                   Difference difference) const;
+  [[nodiscard]] files::Matrix read(const std::string& drive, std::size_t descriptor) const;
 
   /// The drive's frames. Throws SetupError.
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& drive) const;
@@ -67,16 +67,23 @@ class DescribedDrives {
   /// Before stills are taken of it. Throws SetupError.
   static std::unique_ptr<FrameSource> open_whole(const DriveSpec& spec);
 
-  /// Looks at what was described elsewhere. @return values in a row. Throws SetupError.
-  std::size_t look_at(const Wanted& wanted);
-  void check_rows(const std::set<Wanted>& wanted, Faults& faults);
+  struct Made {
+    std::filesystem::path file;
+    std::string made_from;
+  };
+
+  /// Looks at what was described elsewhere. @param pictures what tells the drive's from others
+  /// @return values in a row. Throws SetupError.
+  std::size_t look_at(const Wanted& wanted, const std::string& pictures);
+  void check_rows(const std::set<Wanted>& wanted, std::map<std::string, std::string>& states,
+                  Faults& faults);
   void check_pictures(const std::set<Wanted>& wanted, Faults& faults) const;
   void describe(const Wanted& wanted) const;
 
   const Experiment& experiment_;
   std::filesystem::path folder_;
   std::map<std::string, Declared> lengths_;
-  std::map<Wanted, std::filesystem::path> files_;
+  std::map<Wanted, Made> files_;
 };
 
 }  // namespace seqloop::experiment

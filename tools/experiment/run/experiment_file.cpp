@@ -115,6 +115,9 @@ class Reader {
     if (!(drive.fps >= 1e-3 && drive.fps <= 1e6)) {
       section.refuse("'fps' must be between 0.001 and 1000000");
     }
+    if (drive.source.empty() && !drive.settings.empty()) {
+      section.refuse("drive '" + drive.name + "' has no source, which the rest is about");
+    }
     find(drive.source);
     for (const Fault& fault : validate(drive.stills)) {
       section.refuse(fault.what + ": " + fault.why, fault.remedy);
@@ -152,6 +155,9 @@ class Reader {
       section.refuse("'topic' chooses nothing in an experiment", "give bags with one topic only");
     const Names described = section.names("described");
     if (described.size() > 1) section.refuse("'described' is one folder");
+    if (described.size() == 1 && described.front().empty()) {
+      section.refuse("'described': its value is empty", "give one, or leave it out");
+    }
     const auto written = section.written(known, {"name", "training", "fps", "topic", "described"});
     if (!described.empty() && !(written.empty() && training.empty())) {
       section.refuse("descriptor '" + name + "' has been described elsewhere",

@@ -191,8 +191,9 @@ class Runner {
       const double share = run.config.candidates == Candidates::all ? 1.0 : 0.1;
       double bytes = 0.0;
       for (const std::string& query : pair.queries) {
-        bytes +=
-            static_cast<double>(std::filesystem::file_size(drives_.file(query, run.descriptor)));
+        std::error_code error;  // it has gone: that is told as it is read
+        const auto size = std::filesystem::file_size(drives_.file(query, run.descriptor), error);
+        if (!error) bytes += static_cast<double>(size);
       }
       const auto about = [this](const std::string& drive) { return drives_.about(drive); };
       const auto places = static_cast<double>(*lengths_of(pair, about).map(pair));
@@ -246,9 +247,15 @@ class Runner {
   [[nodiscard]] DescribedPair read(const RunSpec& run) const {
     const PairSpec& pair = experiment_.pairs[run.pair];
     const auto read_drive = [&](const std::string& drive) {
-      files::Matrix rows = drives_.read(drive, run.descriptor, run.config.difference);
+      files::Matrix rows = drives_.read(drive, run.descriptor);
       const std::optional<KeptFrames>& kept = kept_frames_[run.pair];
       if (!kept) return rows;
+      if (kept->frames.back() >= rows.rows) {
+        throw SetupError(
+            {drives_.file(drive, run.descriptor).string(),
+             fmt::format("it has {}, and drive '{}' more frames", counted(rows.rows, "row"), drive),
+             "describe the same frames, one row each"});
+      }
       for (std::size_t i = 0; i < kept->frames.size(); ++i) {
         std::ranges::copy(rows.row(static_cast<std::size_t>(kept->frames[i])),
                           rows.values.begin() + static_cast<std::ptrdiff_t>(i * rows.columns));

@@ -18,6 +18,7 @@
 #include "program/bench/search_bench.hpp"
 #include "program/bench/step_bench.hpp"
 #include "program/drives/drives.hpp"
+#include "program/options/flag_names.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/build_info.hpp"
 #include "program/process/say.hpp"
@@ -105,8 +106,9 @@ void bench(const BenchSettings& settings, const Peers& peers, Faults faults) {
     for (Fault& fault : validate(config)) faults.push_back(std::move(fault));
     for (const std::size_t places : settings.places) {
       for (Fault& fault : validate(Capacity{places, settings.descriptor_size}, config)) {
-        if (fault.what == "places") fault.what = "n";
-        if (fault.what == "descriptor_size") fault.what = "d";
+        fault = in_flags(std::move(fault));
+        if (fault.what == "max-places") fault.what = "n";
+        if (fault.what == "descriptor-size") fault.what = "d";
         faults.push_back(std::move(fault));
       }
     }
