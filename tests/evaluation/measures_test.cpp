@@ -79,7 +79,8 @@ TEST(CalibrationError, HasABinThatBeginsWithEachTenthFloatOrDouble) {
   for (std::uint64_t tenth = 0; tenth < 10; ++tenth) {
     const double probability = static_cast<double>(tenth) / 10.0;
     answers.push_back(said(2 * tenth, probability, true));
-    answers.push_back(said(2 * tenth + 1, double{static_cast<float>(probability)}, true));
+    answers.push_back(
+        said(2 * tenth + 1, static_cast<double>(static_cast<float>(probability)), true));
   }
   for (const ReliabilityBin& bin : measured(answers).reliability) EXPECT_EQ(bin.count, 2U);
 }
