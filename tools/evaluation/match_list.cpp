@@ -6,7 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 
 #include "evaluation/csv.hpp"
 #include "evaluation/line_faults.hpp"
@@ -17,26 +16,6 @@ namespace seqloop::evaluation {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr auto keep_one = "keep its best answer";
-
-/// Answers, each to another query.
-class Answers {
- public:
-  /// @return what is wrong with it: its query has an answer
-  [[nodiscard]] std::optional<std::string> add(Answer answer) {
-    if (!queries_.insert(answer.query).second)
-      return "query " + std::to_string(answer.query) + " is answered twice";
-    answers_.push_back(answer);
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::vector<Answer> take() { return std::move(answers_); }
-
- private:
-  std::vector<Answer> answers_;
-  std::set<std::uint64_t> queries_;
-};
 
 std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) {
   const std::vector<std::size_t> columns = table.columns({"query", "match", swept});
@@ -50,7 +29,7 @@ std::vector<Answer> from_table(const CsvTable& table, const std::string& swept) 
     }
     if (accepted) answer.accepted = row.flag(*accepted);
     if (!row.faults().empty()) return;
-    if (const auto wrong = answers.add(answer)) throw SetupError({row.where(), *wrong, keep_one});
+    if (!answers.add(answer)) throw SetupError(Answers::answered_twice(row.where(), answer));
   });
   return answers.take();
 }
@@ -100,7 +79,7 @@ class Lines {
       found.accepted = *status == "match";
     }
     if (!query || !match || faults_.size() > before) return;
-    if (const auto wrong = answers.add(found)) blame(*wrong, keep_one);
+    if (!answers.add(found)) faults_.push_back(Answers::answered_twice(where_, found));
   }
 
   /// NaN where it is null.
@@ -157,6 +136,17 @@ std::vector<Answer> from_lines(std::string_view text, const std::string& name,
 }
 
 }  // namespace
+
+bool Answers::add(const Answer& answer) {
+  if (!queries_.insert(answer.query).second) return false;
+  answers_.push_back(answer);
+  return true;
+}
+
+Fault Answers::answered_twice(std::string where, const Answer& answer) {
+  return {std::move(where), "query " + std::to_string(answer.query) + " is answered twice",
+          "keep its best answer"};
+}
 
 std::string name_of(ThresholdOn threshold_on) {
   switch (threshold_on) {

@@ -5,9 +5,13 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "seqloop/fault.hpp"
 
 namespace seqloop::evaluation {
 
@@ -20,6 +24,22 @@ struct Answer {
   /// That the match is right, 0 .. 1; NaN: not said.
   double probability = std::numeric_limits<double>::quiet_NaN();
   std::optional<bool> accepted = {};  ///< whether the program stands by it; none: not said
+};
+
+/// Answers of a match list, each to another query.
+class Answers {
+ public:
+  /// @return false where its query has an answer already. Work: log N.
+  [[nodiscard]] bool add(const Answer& answer);
+
+  /// What is to be told then. @param where the answer stands
+  [[nodiscard]] static Fault answered_twice(std::string where, const Answer& answer);
+
+  [[nodiscard]] std::vector<Answer> take() { return std::move(answers_); }
+
+ private:
+  std::vector<Answer> answers_;
+  std::set<std::uint64_t> queries_;
 };
 
 /// Which of a match list's numbers the curve sweeps. A larger probability is more certain, a

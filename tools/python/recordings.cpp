@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -158,30 +157,25 @@ std::vector<evaluation::Answer> answers_of(const py::object& matches,
   if (probability) check_length("probability", probability->size());
   if (accepted) check_length("accepted", accepted->size());
   faults.refuse();
-  std::vector<evaluation::Answer> answers;
-  std::set<std::int64_t> queries;
+  evaluation::Answers answers;
   for (py::ssize_t i = 0; i < query.size(); ++i) {
+    const auto where = [i] { return fmt::format("matches, row {}", i); };
     const double said = probability ? probability->at(i) : nan;
-    const auto blame = [&](std::string why, const char* remedy) {
-      faults.add({fmt::format("matches, row {}", i), std::move(why), remedy});
-    };
     const auto [least, most] = std::minmax(query.at(i), match.at(i));
     if (least < 0 || most > most_number) {
-      blame("a frame or a place is below 0, or above 2^62", "count them from 0");
+      faults.add({where(), "a frame or a place is below 0, or above 2^62", "count them from 0"});
     }
     if (said < 0.0 || said > 1.0) {
-      blame(fmt::format("its probability is {}", said), "give 0 to 1, or NaN");
+      faults.add({where(), fmt::format("its probability is {}", said), "give 0 to 1, or NaN"});
     }
-    if (!queries.insert(query.at(i)).second) {
-      blame(fmt::format("query {} is answered twice", query.at(i)), "keep its best answer");
-    }
-    evaluation::Answer& answer = answers.emplace_back(evaluation::Answer{
-        static_cast<std::uint64_t>(query.at(i)), static_cast<std::uint64_t>(match.at(i)),
-        evaluation::uncertainty(on, threshold.at(i)), said});
+    evaluation::Answer answer{static_cast<std::uint64_t>(query.at(i)),
+                              static_cast<std::uint64_t>(match.at(i)),
+                              evaluation::uncertainty(on, threshold.at(i)), said};
     if (accepted) answer.accepted = accepted->at(i);
+    if (!answers.add(answer)) faults.add(evaluation::Answers::answered_twice(where(), answer));
   }
   faults.refuse();
-  return answers;
+  return answers.take();
 }
 
 /// Right answers as a CSV file has them. Throws SetupError.

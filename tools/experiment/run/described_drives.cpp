@@ -143,10 +143,8 @@ void DescribedDrives::check_rows(const std::set<Wanted>& wanted,
       if (run.descriptor != index) continue;
       Faults found = validate(Capacity{1, other.first}, run.config);
       if (found.empty()) continue;
-      for (Fault& fault : found) {
-        fault = program::in_flags(std::move(fault));
-        faults.push_back({descriptor.where, fault.what + ": " + fault.why, fault.remedy});
-      }
+      for (Fault& fault : found) fault = program::in_flags(std::move(fault));
+      collect_at(descriptor.where, faults, [&] { program::refuse(found); });
       break;
     }
     if (drives.size() < 2) continue;
@@ -183,9 +181,8 @@ void DescribedDrives::check_pictures(const std::set<Wanted>& wanted, Faults& fau
     faults.push_back({drive.where, "drive '" + drive.name + "' has no source"});
   }
   for (const PairSpec& pair : experiment_.pairs) {
-    if (!pair.leave_out) continue;
     // One that closes loops is refused.
-    if (pair.reference.empty()) continue;
+    if (!pair.leave_out || pair.reference.empty()) continue;
     for (const std::string& drive : {pair.reference, pair.queries.front()}) {
       want(drive, "pair '" + pair.name + "'");
     }
