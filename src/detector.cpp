@@ -7,9 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "seqloop/detail/calibration.hpp"
 #include "seqloop/detail/detector_faults.hpp"
+#include "seqloop/detail/evidence.hpp"
 #include "seqloop/detail/lowest_lines.hpp"
-#include "seqloop/detail/portable_math.hpp"
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/detail/stop_run.hpp"
 #include "seqloop/difference.hpp"
@@ -310,7 +311,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   say_last(report, report.newest, readable);
   if (const auto& likeliest = belief_.likeliest(); likeliest && readable) {
     report.now = Belief{map_->order().number(likeliest->row),
-                        static_cast<float>(logistic(log_odds_now(*pending_.evidence()))),
+                        static_cast<float>(calibrated_now(log_odds_now(*pending_.evidence()))),
                         static_cast<float>(belief_.new_place())};
   }
 }

@@ -27,4 +27,12 @@ std::string_view name(Gate gate) noexcept {
   return "unknown";
 }
 
+std::optional<Gate> gate_of(std::string_view name) noexcept {
+  for (std::size_t index = 0; index < gates; ++index) {
+    const auto gate = static_cast<Gate>(index);
+    if (name == seqloop::name(gate)) return gate;
+  }
+  return std::nullopt;
+}
+
 }  // namespace seqloop

@@ -28,6 +28,9 @@ inline constexpr std::size_t gates = 9;
 /// `no_frame`, `frame_error`, ...
 [[nodiscard]] std::string_view name(Gate gate) noexcept;
 
+/// The gate of that name; none: no gate has it.
+[[nodiscard]] std::optional<Gate> gate_of(std::string_view name) noexcept;
+
 /// The best row of the map for a frame.
 struct Match {
   /// The place at the centre column, by its number: places are counted from 0 as they are added,

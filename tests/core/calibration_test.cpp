@@ -25,13 +25,15 @@ TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
 
 TEST(Calibration, SaysWhatWasRight) {
   // Section 6.6, below it, and between.
-  for (const auto& [given, right] : {std::pair{-5.6, -1.25 - 0.31},
-                                     {-4.6, -1.25},
-                                     {-1.4, -0.5},
-                                     {-0.3, -0.42},
+  for (const auto& [given, right] : {std::pair{-14.0, -3.9 - 0.35},
+                                     {-13.0, -3.9},
+                                     {-9.0, -2.45},
+                                     {-4.6, -1.3},
+                                     {-1.4, -1.0},
+                                     {-0.3, -0.85},
                                      {0.8, 0.0},
-                                     {1.5, 0.3},
-                                     {2.2, 0.6},
+                                     {1.5, 0.5},
+                                     {2.2, 1.0},
                                      {2.92, 1.6},
                                      {2.944, 2.944}}) {
     EXPECT_NEAR(log_odds(calibrated(of_odds(given))), right, 1e-9) << given;
@@ -49,6 +51,34 @@ TEST(Calibration, TakesTheEnds) {
   EXPECT_GE(calibrated(0.0), 0.0);
   EXPECT_LT(calibrated(0.0), 0.001);
   EXPECT_EQ(calibrated(1.0), 1.0);
+}
+
+TEST(Calibration, SaysHowOftenTheNewestFrameWasRight) {
+  // Section 6.4, below it, between, and from .9 on.
+  for (const auto& [given, right] : {std::pair{-15.0, -2.6 - 0.3},
+                                     {-14.0, -2.6},
+                                     {-9.0, -2.1},
+                                     {-6.0, -1.4},
+                                     {-3.5, -0.65},
+                                     {-1.75, 0.25},
+                                     {-0.625, 0.725},
+                                     {0.5, 1.2},
+                                     {2.2, 2.2},
+                                     {4.6, 4.6}}) {
+    EXPECT_NEAR(log_odds(calibrated_now(given)), right, 1e-9) << given;
+  }
+}
+
+TEST(Calibration, RisesWithTheOddsOfTheNewestFrame) {
+  double before = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double odds = -30.0 + 0.036 * i;
+    const double right = calibrated_now(odds);
+    ASSERT_GT(right, before) << odds;
+    ASSERT_LE(right, 1.0) << odds;
+    before = right;
+  }
+  EXPECT_LT(calibrated_now(-1000.0), 1e-6);
 }
 
 }  // namespace

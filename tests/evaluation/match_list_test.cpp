@@ -95,6 +95,10 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
                          "'uniqueness' is no number"));
   EXPECT_TRUE(test::says(refused("{\"frame\":1,\"match\":2,\"uniqueness\":0,\"probability\":1.5}"),
                          "'probability' is not from 0 to 1"));
+  for (const std::string status : {"\"accepted\"", "\"\"", "1", "null"}) {
+    const std::string line = R"({"frame":1,"match":2,"uniqueness":0,"status":)" + status + "}";
+    EXPECT_TRUE(test::says(refused(line), "'status' is none that `run` writes")) << status;
+  }
   EXPECT_TRUE(test::says(refused("{\"answers\":3}"), "'answers' is no array"));
   EXPECT_TRUE(test::says(refused("{\"answers\":[3]}"), "'answers' holds what is no JSON object"));
   EXPECT_TRUE(test::says(refused(""), "empty"));

@@ -11,6 +11,7 @@
 #include "evaluation/line_faults.hpp"
 #include "files/text_file.hpp"
 #include "seqloop/fault.hpp"
+#include "seqloop/frame_report.hpp"
 
 namespace seqloop::evaluation {
 namespace {
@@ -75,11 +76,17 @@ class Lines {
       if (found.probability < 0.0 || found.probability > 1.0)
         blame("'probability' is not from 0 to 1");
     }
-    if (const auto status = answer.find("status"); status != answer.end()) {
-      found.accepted = *status == "match";
-    }
+    if (answer.contains("status")) found.accepted = status(answer) == Gate::match;
     if (!query || !match || faults_.size() > before) return;
     if (!answers.add(found)) faults_.push_back(Answers::answered_twice(where_, found));
+  }
+
+  std::optional<Gate> status(const Json& answer) {
+    const Json& word = answer.at("status");
+    const std::optional<Gate> gate =
+        word.is_string() ? gate_of(word.get_ref<const std::string&>()) : std::nullopt;
+    if (!gate) blame("'status' is none that `run` writes", "write \"match\" of what is accepted");
+    return gate;
   }
 
   /// NaN where it is null.

@@ -12,4 +12,10 @@ namespace seqloop {
 /// What is calibrated to this. @param probability 0 .. 1 @return 0 .. 1
 [[nodiscard]] double before_calibration(double probability) noexcept;
 
+/// How often the newest frame's likeliest row was right whose log-odds are these, on the drives
+/// that numbers were chosen by. From .9 on it is what they say. Rises with them. @param odds
+/// log-odds
+/// @return 0 .. 1 Work: an exponential. Source: src/README.md, section 6.4.
+[[nodiscard]] double calibrated_now(double odds) noexcept;
+
 }  // namespace seqloop

@@ -22,13 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<Gate> gate_of(const std::string& word) {
-  for (std::size_t gate = 0; gate < gates; ++gate) {
-    if (word == name(static_cast<Gate>(gate))) return static_cast<Gate>(gate);
-  }
-  return std::nullopt;
-}
-
 template <class Number>
 Number number(const Json& json, const char* key, Number otherwise) {
   const auto found = json.find(key);
