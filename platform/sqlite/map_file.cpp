@@ -180,16 +180,32 @@ void MapFile::State::take_form(const MapForm& wanted) {
   transaction.commit();
 }
 
+void check_nothing_is_left_of_another(const fs::path& path) {
+  std::error_code error;
+  if (fs::exists(path, error)) return;
+  const fs::path log = path.string() + "-wal";
+  const fs::path journal = path.string() + "-journal";
+  const bool is_rewritten =
+      fs::is_regular_file(journal, error) && fs::file_size(journal, error) > 0;
+  if (!is_rewritten && !holds_batches(log)) return;
+  throw SetupError({(is_rewritten ? journal : log).string(),
+                    "belongs to a map that is there no more and was not closed: what was saved "
+                    "last may be in this alone",
+                    "put that map back, or this beside it under its new name; if neither is "
+                    "wanted, remove this"});
+}
+
 MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {
   if (form) {
     check_form(path, *form);
   } else {
     check_file(path);
   }
+  check_nothing_is_left_of_another(path);
   Holder holder(path);
   if (holder.made()) {
-    // What is beside a file that was just made is another's, which was removed: SQLite would share
-    // that one's memory with whoever writes it still.
+    // What is beside a file that was just made is another's: SQLite would share that one's memory
+    // with whoever writes it still.
     std::error_code error;
     for (const char* tail : {"-wal", "-shm", "-journal"}) fs::remove(path.string() + tail, error);
   }

@@ -108,6 +108,13 @@ bool is_damaged_log(const fs::path& log) {
   return head_of(again) == head;
 }
 
+bool holds_batches(const fs::path& log) {
+  bool any = false;
+  each_frame(log,
+             [&any](const LogFrame& frame) { any = any || (frame.whole && frame.ends_batch); });
+  return any;
+}
+
 void put_log_into(const fs::path& file, const fs::path& log) {
   std::size_t count = 0;
   std::size_t end = 0;

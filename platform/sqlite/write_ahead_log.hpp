@@ -13,6 +13,9 @@ namespace seqloop::sqlite {
 /// Source: https://www.sqlite.org/fileformat2.html, section 4.
 [[nodiscard]] bool is_damaged_log(const std::filesystem::path& log);
 
+/// Whether a log holds a batch that was saved. @param log need not be there
+[[nodiscard]] bool holds_batches(const std::filesystem::path& log);
+
 /// Puts all pages of a log that are whole into the file, up to where the last batch ends.
 /// Throws SaveError: the file cannot be written.
 void put_log_into(const std::filesystem::path& file, const std::filesystem::path& log);

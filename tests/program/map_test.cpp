@@ -151,6 +151,19 @@ TEST_F(MapVerb, WhatAKilledOneLeftIsRemoved) {
   EXPECT_TRUE(exists(".newer.partial-12345-wal"));
 }
 
+TEST_F(MapVerb, NothingIsMadeBesideWhatIsLeftOfAnotherMap) {
+  make("a");
+  make("b");
+  folder_.write("new-journal", "pages of another");
+  const std::string words = "new-journal: belongs to a map that is there no more";
+  expect_refused("merge a b --out new", words);
+  expect_refused("recover a new", words);
+  expect(0, "export a --out folder", "folder: 80 places");
+  expect_refused("import folder --out new", words);
+  EXPECT_FALSE(exists("new"));
+  EXPECT_EQ(listing().find(".partial"), std::string::npos) << listing();
+}
+
 TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {
   make("a");
   {

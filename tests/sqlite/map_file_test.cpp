@@ -823,6 +823,37 @@ TEST_F(Map, TakesNothingFromTheLogOfOneThatHadItsName) {
   EXPECT_EQ(content(MapFile::read_only(file("killed"))), before);
 }
 
+TEST_F(Map, IsNotBegunBesideWhatIsLeftOfOneThatIsGone) {
+  make();
+  {
+    const Other other([this](const auto& done) {
+      MapFile map = open();
+      test::save_sample(map, 2, 44, 3);
+      done(true);
+    });
+    ASSERT_TRUE(other.well());
+  }
+  const std::string saved = content();
+  fs::rename(file(), file("elsewhere"));
+  const std::string fault = setup_error([this] { (void)open(); });
+  EXPECT_TRUE(
+      says(fault, file("map.seqloop-wal").string() + ": belongs to a map that is there no more"));
+  EXPECT_FALSE(fs::exists(file())) << "nothing is made";
+  fs::rename(file("elsewhere"), file());
+  EXPECT_EQ(content(), saved) << "it is put back";
+
+  // Of a log that was begun, and of an empty journal, nothing is lost.
+  fs::rename(file(), file("elsewhere"));
+  fs::copy_file(file("map.seqloop-wal"), file("elsewhere-wal"));
+  fs::resize_file(file("map.seqloop-wal"), 32 + 24);
+  std::ofstream(file().string() + "-journal");
+  (void)open();
+  EXPECT_EQ(content(MapFile::read_only(file("elsewhere"))), saved);
+  fs::remove(file());
+  std::ofstream(file().string() + "-journal") << "pages";
+  EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "-journal: belongs to a map"));
+}
+
 TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {
   make();
   const std::string before = content();
@@ -846,6 +877,9 @@ TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {
   std::optional<MapFile> old = open();
   test::save_sample(*old, 2, 48, 3);
   fs::remove(file());
+  EXPECT_TRUE(
+      says(setup_error([this] { (void)open(); }), "belongs to a map that is there no more"));
+  fs::remove(file("map.seqloop-wal"));
   const Other other([this](const auto& done) {
     MapFile map = open();
     test::save_sample(map, map.begin_session("new", 7, ""), 0, 5);

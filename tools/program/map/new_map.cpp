@@ -49,6 +49,7 @@ NewMap::NewMap(fs::path path) : path_(std::move(path)) {
   if (fs::exists(fs::symlink_status(path_, error))) {
     throw SetupError({name, "there is such a file already", "choose another name, or remove it"});
   }
+  sqlite::check_nothing_is_left_of_another(path_);
   const files::Partial made = files::make_partial(path_, files::PartialKind::file);
   if (made.descriptor < 0) {
     throw SetupError({name, "cannot be made: " + std::string(std::strerror(errno)),

@@ -133,6 +133,11 @@ class SaveError : public std::runtime_error {
   using runtime_error::runtime_error;
 };
 
+/// For a file that is to become a map: what lies beside its name must not be of a map that was
+/// moved or removed alone, since it may hold what was saved last. Where there is a file already,
+/// nothing is looked at. Throws SetupError: it is the log or the journal of such a map.
+void check_nothing_is_left_of_another(const std::filesystem::path& path);
+
 /// A map of many sessions in one SQLite database; README.md here has its schema.
 ///
 /// One process at a time may write; others read meanwhile, and see what was saved when they
@@ -151,7 +156,7 @@ class MapFile {
   /// nothing takes another form.
   /// @param form of what is to be saved; nothing: as the map's is, which must exist
   /// Throws SetupError as `read_only`, and: held by another process (which, on which machine), not
-  /// writable, of another form.
+  /// writable, of another form; as `check_nothing_is_left_of_another`.
   [[nodiscard]] static MapFile open(const std::filesystem::path& path,
                                     const std::optional<MapForm>& form);
 
