@@ -37,18 +37,33 @@ TEST(Superseded, AreSessionsThatSixLaterOnesHaveSeen) {
 TEST(Superseded, ASessionStaysWhileAStretchOfItWasSeenNowhereElse) {
   Sessions sessions(7, lap(0, 1'000));
   Places& oldest = sessions.front();
-  for (std::size_t i = 0; i < 60; ++i) oldest[400 + i].first = 9'000 + i;
+  for (std::size_t i = 0; i < 15; ++i) oldest[400 + i].first = 9'000 + i;
   EXPECT_EQ(superseded(sessions), Indices{0});
-  oldest[460].first = 9'060;
-  EXPECT_EQ(superseded(sessions), Indices{}) << "61 places in a row";
+  oldest[415].first = 9'015;
+  EXPECT_EQ(superseded(sessions), Indices{}) << "16 places in a row";
+}
+
+TEST(Superseded, WhatLiesBesideWhatWasSeenAgainWasNot) {
+  const auto but_for = [](std::size_t first, std::size_t places) {
+    Places all = lap(0, 400);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    all.erase(begin, begin + static_cast<std::ptrdiff_t>(places));
+    return all;
+  };
+  Sessions sessions(7, but_for(160, 31));
+  sessions.front() = lap(0, 400);
+  EXPECT_EQ(superseded(sessions), Indices{}) << "a side road that six drives have left out";
+  sessions.assign(7, but_for(168, 16));
+  sessions.front() = lap(0, 400);
+  EXPECT_EQ(superseded(sessions), Indices{0}) << "half of either sixteen was seen again";
 }
 
 TEST(Superseded, ASessionStaysWhileTwoFifthsOfItWasSeenNowhereElse) {
   Sessions sessions(7, lap(0, 1'000));
   Places& oldest = sessions.front();
-  for (std::size_t i = 0; i < 400; ++i) oldest[i / 50 * 125 + i % 50].first = 9'000 + i;
+  for (std::size_t i = 0; i < 400; ++i) oldest[i / 10 * 25 + i % 10].first = 9'000 + i;
   EXPECT_EQ(superseded(sessions), Indices{0});
-  oldest[960].first = 9'900;
+  oldest[990].first = 9'900;
   EXPECT_EQ(superseded(sessions), Indices{});
 }
 

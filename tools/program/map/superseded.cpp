@@ -9,23 +9,17 @@ namespace {
 
 // All chosen on garage_laps; the page of the room platform/sqlite has the numbers.
 constexpr std::size_t enough_visits = 6;      // sessions
-constexpr std::uint64_t side_by_side = 16;    // places that count as one, and those beside them
-constexpr std::size_t longest_stretch = 60;   // places
+constexpr std::uint64_t side_by_side = 16;    // places that count as one
+constexpr std::size_t longest_stretch = 15;   // places
 constexpr std::size_t most_not_visited = 40;  // percent of a session's places
 
 /// In which sessions places were seen, the newest session first.
 using Visits = std::unordered_map<std::uint64_t, std::vector<std::size_t>>;
 
-/// Sessions that have been where a place is.
+/// How many sessions have been where a place is.
 std::size_t visits_of(const Visits& visits, std::uint64_t first) {
-  const std::uint64_t at = first / side_by_side;
-  std::vector<std::size_t> seen;
-  for (const std::uint64_t near : {at == 0 ? at : at - 1, at, at + 1}) {
-    const auto found = visits.find(near);
-    if (found != visits.end()) seen.insert(seen.end(), found->second.begin(), found->second.end());
-  }
-  std::ranges::sort(seen);
-  return static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
+  const auto found = visits.find(first / side_by_side);
+  return found == visits.end() ? 0 : found->second.size();
 }
 
 }  // namespace
