@@ -169,6 +169,13 @@ async function main([path, file, token, mode, folder]) {
   await page.click('summary');
   const helped = await page.$$eval('#words dt', (all) => all.map((term) => term.textContent));
   const named = await page.$$eval('#counts dt, #map dt', (all) => all.map((term) => term.textContent));
+  const counted = await page.evaluate(() => {
+    fillTerms('counts', [['match', '1'], ['warming_up', '2'], ['lost', '3']]);
+    fillTerms('counts', [['match', '1'], ['unsure', '4'], ['lost', '3']]);
+    return [...byId('counts').children].map((element) => element.textContent);
+  });
+  assert.deepStrictEqual(counted, ['match', '1', 'unsure', '4', 'lost', '3'], 'each value beside its own name');
+
   const said = await page.evaluate(() => Object.keys({...view.status.frame, ...view.status.answer, ...view.status.frame.latency_ms}));
   assert.ok(said.length > 20, String(said));
   assert.deepStrictEqual([...named, ...said].filter((name) => !helped.includes(name)), []);

@@ -104,7 +104,9 @@ const show = (id, text) => { const at = byId(id); if (at.textContent !== text) a
 /// Fills a list of terms; each has its help text.
 function fillTerms(id, terms) {
   const list = byId(id);
-  if (list.childElementCount !== 2 * terms.length) {
+  // One term may leave as another comes.
+  const shown = [...list.querySelectorAll('dt')].map((term) => term.textContent);
+  if (shown.length !== terms.length || terms.some(([name], i) => name !== shown[i])) {
     list.replaceChildren(...terms.flatMap(([name]) => [
       make('dt', {}, HELP[name] ? make('abbr', {title: HELP[name]}, name) : name), make('dd')]));
   }
