@@ -36,11 +36,13 @@ constexpr double where_it_leads = 0.25;
 
 // How much of a hypothesis' pace is its last move. A robot that adds places leaves those it knows:
 // a hypothesis that slowed down quickly would linger beside the road, and one that slows down
-// though the newest frames raise so much doubt does. What hardly differs from one is no other pace.
+// though the newest frames raise so much doubt does. What hardly differs from one is no other pace;
+// an earlier drive's places are passed more slowly than the robot's own as often as not.
 constexpr double last_move = 0.1;
 constexpr double last_move_of_a_slow_one = 0.05;
 constexpr double most_doubt_of_a_slower_one = 2.0;
 constexpr double slow_pace = 0.65;
+constexpr double slow_pace_of_earlier = 0.85;
 constexpr double fast_pace = 1.35;
 
 // The chance of a jump from which on rows that go on at another pace than the robot are likelier to
@@ -145,8 +147,9 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const double each = (born - by_line) / static_cast<double>(view.seen->scanned().size());
   // In a drive's own map what is believed less than a row that is found anew will be found again.
   std::array<Moves, most> moves;
-  std::ranges::transform(rows_.first(count_), moves.begin(),
-                         [&](const Hypothesis& at) { return moves_of(at, *scene, jumps); });
+  std::ranges::transform(rows_.first(count_), moves.begin(), [&](const Hypothesis& at) {
+    return moves_of(view.map->order(), at, *scene, jumps);
+  });
   move(view.map->order(), moves, earlier_drives ? 0.0 : each);
   double on = ended_.mass;
   for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
@@ -173,9 +176,11 @@ void PlaceBelief::prefetch(const SceneView& view) noexcept {
 
 /// A robot may pass places at another pace than it, or an earlier drive, did: there a hypothesis
 /// goes on at its own.
-Moves PlaceBelief::moves_of(const Hypothesis& at, const Scene& scene, double jumps) const noexcept {
+Moves PlaceBelief::moves_of(const PlaceOrder& order, const Hypothesis& at, const Scene& scene,
+                            double jumps) const noexcept {
+  const double slow = is_of_this_drive(order, at.row) ? slow_pace : slow_pace_of_earlier;
   const bool at_its_pace = scene.drives() && jumps <= jumps_often &&
-                           (localises_ || at.pace < slow_pace || at.pace > fast_pace);
+                           (localises_ || at.pace < slow || at.pace > fast_pace);
   return at_its_pace ? moves_at(at.pace) : scene.moves();
 }
 
@@ -501,14 +506,17 @@ void PlaceBelief::share_history(const PlaceOrder& order, const Hypothesis& top,
   traces_.set_parent(index, at.parent);
 }
 
+bool PlaceBelief::is_of_this_drive(const PlaceOrder& order, std::size_t row) const noexcept {
+  return !localises_ && row >= order.newest_session().first;
+}
+
 /// How much less alike a place looks than it has to. Who is back within 100 rows is back in the
 /// same light. What comes again so soon, and looks little like it was, is a wiper on the lens, say,
 /// or one rack after the other.
 double PlaceBelief::unlike(const PlaceMap& map, const Hypothesis& at) const noexcept {
   constexpr std::size_t soon = 100;
   constexpr double least = 0.45;
-  const bool is_of_this_drive = !localises_ && at.row >= map.order().newest_session().first;
-  if (!is_of_this_drive || map.size() - at.row >= soon) return 0.0;
+  if (!is_of_this_drive(map.order(), at.row) || map.size() - at.row >= soon) return 0.0;
   return std::max(0.0, least - at.alike);
 }
 

@@ -81,9 +81,10 @@ class NaiveBelief {
       w = change * gone;
     }
     // 6.3, move
-    const auto chances = [&](std::size_t, double pace) -> std::vector<double> {
+    const auto chances = [&](std::size_t row, double pace) -> std::vector<double> {
       if (w <= 0.02) return {0.45, 0.40, 0.15};
-      const bool near_one = pace >= 0.65 && pace <= 1.35;
+      const bool of_this_drive = row >= view.map->order().newest_session().first;
+      const bool near_one = pace >= (of_this_drive ? 0.65 : 0.85) && pace <= 1.35;
       if (jumps_ > 0.01 || (!localises_ && near_one)) return {0.06, 0.88, 0.06};
       // Those of one that stays, or goes by two, get more, the further its pace is from one.
       const double off = std::abs(pace - 1.0);

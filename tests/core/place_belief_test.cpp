@@ -38,11 +38,7 @@ struct Said {
   Work most;
 };
 
-Said drive_through(const oracle::Vectors& reference, const oracle::Vectors& query,
-                   const MatcherConfig& config, bool finish = true) {
-  PlaceMap map = reference.empty() ? PlaceMap(config, {query.size(), query.front().size()})
-                                   : map_of(reference, config);
-  Detector detector(config, map);
+Said drive_with(Detector& detector, const oracle::Vectors& query, bool finish = true) {
   Said said;
   for (const auto& descriptor : query) {
     const FrameReport report = detector.step(descriptor);
@@ -58,6 +54,14 @@ Said drive_through(const oracle::Vectors& reference, const oracle::Vectors& quer
   }
   std::ranges::sort(said.answers, {}, &Answer::frame);
   return said;
+}
+
+Said drive_through(const oracle::Vectors& reference, const oracle::Vectors& query,
+                   const MatcherConfig& config, bool finish = true) {
+  PlaceMap map = reference.empty() ? PlaceMap(config, {query.size(), query.front().size()})
+                                   : map_of(reference, config);
+  Detector detector(config, map);
+  return drive_with(detector, query, finish);
 }
 
 void expect_each_frame_once(const Said& said, std::size_t frames) {
@@ -96,6 +100,32 @@ TEST(PlaceBelief, KnowsWhereItIsAtAnotherPaceThanTheReference) {
                   pace * static_cast<double>(answer.frame), 12.0);
     }
   }
+}
+
+/// A robot that adds its drive to a map of an earlier one, which it passes more slowly.
+TEST(PlaceBelief, RecognisesAnEarlierDriveThatItPassesMoreSlowly) {
+  constexpr float noise = 5.0F;
+  constexpr std::size_t frames = 300;
+  std::size_t found = 0;
+  std::size_t all = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const MatcherConfig config = settings(Use::close_loops);
+    const oracle::Vectors before = thinned(way(seed, frames, noise, 1), 2.0);
+    const oracle::Vectors query = way(seed, frames, noise, 2);
+    PlaceMap map(config, {before.size() + query.size(), size, 2});
+    ASSERT_TRUE(map.begin_session());
+    for (const auto& place : before) ASSERT_TRUE(map.add(place));
+    Detector detector(config, map);
+    for (const Answer& answer : drive_with(detector, query).answers) {
+      if (answer.gate != Gate::match) continue;
+      ++found;
+      EXPECT_NEAR(static_cast<double>(answer.match->place), static_cast<double>(answer.frame) / 2.0,
+                  12.0);
+    }
+    all += query.size();
+  }
+  std::printf("%zu of %zu frames\n", found, all);
+  EXPECT_GE(found, all * 7 / 10);
 }
 
 /// Drives that pass a way, another one, and the first again.

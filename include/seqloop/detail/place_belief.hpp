@@ -161,7 +161,7 @@ class PlaceBelief {
   };
 
   static void prefetch(const SceneView& view) noexcept;
-  [[nodiscard]] Moves moves_of(const Hypothesis& at, const Scene& scene,
+  [[nodiscard]] Moves moves_of(const PlaceOrder& order, const Hypothesis& at, const Scene& scene,
                                double jumps) const noexcept;
   [[nodiscard]] double pace_after(const Hypothesis& at, double by) const noexcept;
   [[nodiscard]] static Moves unseen_moves_of(const PlaceOrder& order,
@@ -181,6 +181,7 @@ class PlaceBelief {
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
+  [[nodiscard]] bool is_of_this_drive(const PlaceOrder& order, std::size_t row) const noexcept;
   [[nodiscard]] double unlike(const PlaceMap& map, const Hypothesis& at) const noexcept;
   void know_better(const PlaceMap& map, std::size_t index) noexcept;
 
