@@ -95,8 +95,9 @@ class BagSource::Impl {
     if (!stamped_)
       lines.emplace_back("the pictures have no stamps: the times are those of the recording");
     if (late_ > 0)
-      lines.push_back(std::to_string(late_) +
-                      " pictures have an earlier stamp than the one before: they take its time");
+      lines.push_back(counted(late_, "picture") +
+                      " without a later stamp than the one before: between them the times are "
+                      "those of the recording");
     return lines;
   }
 
@@ -116,20 +117,34 @@ class BagSource::Impl {
   [[nodiscard]] Grab take(const Message& message, Frame& frame) {
     const ros::PictureMessage read = ros::read_picture(type_, message.bytes, fault_);
     const std::int64_t now = stamped_ ? read.stamp_ns : message.time_ns;
-    // Seconds and the rest by themselves, so that no stamp is too large; together they are exact.
-    const std::int64_t whole = now / second - start_ns_ / second;
-    const std::int64_t rest = now % second - start_ns_ % second;
-    const double nanoseconds = static_cast<double>(whole) * 1e9 + static_cast<double>(rest);
-    const double seconds = nanoseconds / 1e9;
-    if (seconds < time_s_) {
-      ++late_;
-    } else {
-      time_s_ = seconds;
-    }
+    time_s_ = next_ == 1 ? 0.0 : time_of(now, message.time_ns);
+    last_ns_ = now;
+    last_recorded_ns_ = message.time_ns;
     frame.time_s = time_s_;
     if (!fault_.empty()) return unreadable(frame, fault_.view());
     const std::string_view fault = decoder_->decode(read.picture, frame.image);
     return fault.empty() ? Grab::frame : unreadable(frame, fault);
+  }
+
+  /// Of a picture by its stamp. Where its clock stands still or was set back, time goes on as it
+  /// does in the recording, and from there by the clock, until that is no longer behind.
+  [[nodiscard]] double time_of(std::int64_t stamp_ns, std::int64_t recorded_ns) {
+    const double by_stamp = seconds(start_ns_, stamp_ns);
+    if (by_stamp > time_s_) {
+      behind_s_ = 0.0;
+    } else if (stamp_ns <= last_ns_) {
+      ++late_;
+      const double since_last = std::max(0.0, seconds(last_recorded_ns_, recorded_ns));
+      behind_s_ = time_s_ + since_last - by_stamp;
+    }
+    return std::max(time_s_, by_stamp + behind_s_);
+  }
+
+  /// Seconds and the rest by themselves, so that no stamp is too large; together they are exact.
+  static double seconds(std::int64_t from_ns, std::int64_t to_ns) {
+    const std::int64_t whole = to_ns / second - from_ns / second;
+    const std::int64_t rest = to_ns % second - from_ns % second;
+    return (static_cast<double>(whole) * 1e9 + static_cast<double>(rest)) / 1e9;
   }
 
   static Grab unreadable(Frame& frame, std::string_view fault) noexcept {
@@ -147,6 +162,9 @@ class BagSource::Impl {
   FixedText fault_;
   bool stamped_ = false;
   std::int64_t start_ns_ = 0;
+  std::int64_t last_ns_ = 0;           // of the picture before, by its stamp
+  std::int64_t last_recorded_ns_ = 0;  // and by the recording
+  double behind_s_ = 0.0;              // how far the stamps' clock was set back
   double time_s_ = 0.0;
   std::uint64_t next_ = 0;
   std::uint64_t late_ = 0;

@@ -2,6 +2,7 @@
 #include "seqloop/bags/bag_source.hpp"
 
 #include <optional>
+#include <vector>
 
 #include "bags/bag_bytes.hpp"
 #include "bags/bag_folder.hpp"
@@ -68,13 +69,40 @@ TEST(BagSource, PicturesAndTheirStamps) {
   EXPECT_EQ(frame.time_s, 0.5);
   ASSERT_EQ(source->grab(frame), Grab::unreadable);
   EXPECT_EQ(frame.index, 2U);
-  EXPECT_EQ(frame.time_s, 0.5) << "time does not go back";
+  EXPECT_EQ(frame.time_s, 1.5) << "time does not go back, but on, as it does in the recording";
   EXPECT_EQ(frame.fault, "too few bytes");
   ASSERT_EQ(source->grab(frame), Grab::frame);
   EXPECT_EQ(frame.time_s, 2.0);
   EXPECT_EQ(source->grab(frame), Grab::end);
   EXPECT_EQ(source->notes().back(),
-            "1 pictures have an earlier stamp than the one before: they take its time");
+            "1 picture without a later stamp than the one before: between them the times are those "
+            "of the recording");
+}
+
+TEST(BagSource, ClocksThatAreSetBackStandStillOrBelongToAnotherPicture) {
+  const test::TemporaryFolder folder;
+  const auto times = [&folder](const std::vector<std::int64_t>& stamps_ms) {
+    McapBytes file;
+    file.start().schema(1, image).channel(1, 1, "/camera");
+    std::uint64_t recorded = 5 * second;
+    for (const std::int64_t stamp : stamps_ms)
+      file.message(1, recorded += second / 10, picture(start + stamp * 1'000'000, 1));
+    const auto source = opened(written(folder, file.finish()));
+    std::vector<double> found;
+    for (Frame frame; source->grab(frame) == Grab::frame;) found.push_back(frame.time_s);
+    return found;
+  };
+  const auto expect = [&times](const std::vector<std::int64_t>& stamps_ms,
+                               const std::vector<double>& seconds) {
+    const std::vector<double> found = times(stamps_ms);
+    ASSERT_EQ(found.size(), seconds.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], seconds[i], 1e-6) << i;
+  };
+  expect({0, 100, 200, -999'700, -999'600}, {0, .1, .2, .3, .4});  // set back, to stay
+  expect({0, 100, 200, 150, 250, 350}, {0, .1, .2, .3, .4, .5});   // by little
+  expect({0, 100, 300, 200, 400, 500}, {0, .1, .3, .4, .6, .7});   // two that changed places
+  expect({0, 100, 300, 200, 900}, {0, .1, .3, .4, .9});            // and the clock is right again
+  expect({0, 0, 0, 0}, {0, .1, .2, .3});
 }
 
 TEST(BagSource, WithoutStampsTheTimesOfTheRecording) {

@@ -579,8 +579,16 @@ TEST_F(BadInput, AnOutputBecomesNoPartOfTheDrive) {
     const test::Outcome outcome = run("run --source drive --out drive/more/" + name);
     EXPECT_EQ(outcome.err.find("would be read"), std::string::npos) << outcome.err;
   }
-  const test::Outcome table = run("run --source drive --out drive/answers.jsonl");
-  EXPECT_EQ(table.err.find("would be read"), std::string::npos) << table.err;
+  // Neither the first time, nor when it is there.
+  for (int time = 0; time < 2; ++time) {
+    const test::Outcome table = run("run --source drive --out drive/answers.jsonl");
+    EXPECT_EQ(table.err.find("would"), std::string::npos) << table.err;
+    folder_.write("drive/answers.jsonl", "{}");
+  }
+  folder_.write("drive/0.jpg", "a picture");
+  std::filesystem::create_hard_link(file("drive/0.jpg"), file("drive/other.jsonl"));
+  expect_refused("run --source drive --out drive/other.jsonl",
+                 {"out: writing drive/other.jsonl would destroy an input (source)"});
 }
 
 TEST_F(BadInput, OutputsThatCannotBeLookedUpAreNotOne) {

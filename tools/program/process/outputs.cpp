@@ -48,12 +48,22 @@ bool same(const Target& one, const Target& other) {
   return one.name == other.name;
 }
 
-/// Whether a folder holds a file, by this name or another.
-bool lies_in(const Target& file, const fs::path& folder) {
+/// Whether something that a drive's folder holds is a part of the drive.
+bool is_of_a_drive(const fs::path& entry) {
+  return opencv::has_image_extension(entry) || bags::is_bag(entry) ||
+         entry.filename() == "metadata.yaml";
+}
+
+/// Whether a folder that is read holds a file, by this name or another. Of a drive only what is a
+/// part of it is read.
+bool lies_in(const Target& file, const FileUse& read) {
   if (!file.known_by_number() || file.is_folder()) return false;
+  const fs::path& folder = read.path;
+  const bool drive = read.flag == "source" || read.flag == "reference" || read.flag == "query";
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
+    if (drive && !is_of_a_drive(entry->path())) continue;
     struct stat found {};
     if (::stat(entry->path().c_str(), &found) == 0 && found.st_dev == file.status->st_dev &&
         found.st_ino == file.status->st_ino) {
@@ -79,7 +89,7 @@ std::optional<Fault> clash(const FileUse& output, const FileUse& other) {
                              output.path.string(), other.flag),
                  "choose another folder"};
   }
-  if (!same(target, there) && !lies_in(target, other.path)) {
+  if (!same(target, there) && !lies_in(target, other)) {
     const bool in_drive = there.is_folder() && target.name.parent_path() == there.name;
     if (!in_drive || !(opencv::has_image_extension(output.path) || bags::is_bag(output.path)))
       return std::nullopt;
