@@ -86,7 +86,7 @@ class RawDecoder::Impl {
     } else if (raw.width <= 0 || raw.height <= 0) {
       fault_.assign({"the ", name(raw.format), " picture has no size"});
     } else if (!has_whole_rows(raw)) {
-      describe(raw, " are shorter than the picture is wide");
+      describe(raw, ": they are shorter than the picture is wide");
     } else if (!has_all_bytes(raw)) {
       describe(raw, " has more than the ");
       fault_.append_number(raw.bytes.size());

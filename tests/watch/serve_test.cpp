@@ -191,6 +191,9 @@ TEST_F(Serve, TheLastEventCountsTheAnswersOfTheEnd) {
   EXPECT_EQ(status["state"], "ended");
   EXPECT_EQ(status["counts"]["gates"], Json::parse(test::read_all(file("s.json")))["gates"]);
   EXPECT_EQ(status["frame"]["newest"], lines("r.jsonl").end()[-2]["newest"]) << "it stays";
+  for (const char* key : {"answers", "match", "probability"}) {
+    EXPECT_FALSE(status["frame"].contains(key)) << key << " is not of this frame, but of an answer";
+  }
 }
 
 TEST_F(Serve, IsWellAfterAPause) {

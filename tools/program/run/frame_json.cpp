@@ -105,4 +105,9 @@ void add_answers(Json& frame, std::span<const Answer> answers) {
   for (const char* key : of_an_answer) frame[key] = all.back()[key];
 }
 
+void leave_out_answers(Json& frame) {
+  for (const char* key : of_an_answer) frame.erase(key);
+  frame.erase("answers");
+}
+
 }  // namespace seqloop::program

@@ -30,4 +30,7 @@ struct LoopState {
 /// keys beside them, too.
 void add_answers(nlohmann::ordered_json& frame, std::span<const Answer> answers);
 
+/// Leaves out its answers, and what the last of them says beside `frame` and `status`.
+void leave_out_answers(nlohmann::ordered_json& frame);
+
 }  // namespace seqloop::program

@@ -147,6 +147,7 @@ Json RunView::status() const {
   frame.fault = newest_.fault.view();
   frame.frame.remark = newest_.remark.view();
   json["frame"] = frames_seen_ > 0 ? frame_json(frame, newest_.state) : Json(nullptr);
+  if (frames_seen_ > 0) leave_out_answers(json["frame"]);
   json["answer"] = last_answer_ ? answer_json(*last_answer_) : Json(nullptr);
   json["last_match"] = last_match_ ? answer_json(*last_match_) : Json(nullptr);
   Json& counted = json["counts"];
