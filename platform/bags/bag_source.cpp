@@ -81,7 +81,7 @@ class BagSource::Impl {
       if (read == Read::damaged) return unreadable(frame, message.fault);
       return take(message, frame);
     } catch (const std::exception&) {
-      ++next_;
+      next_ = frame.index + 1;
       return unreadable(frame, "there is not enough memory");
     }
   }
@@ -107,36 +107,48 @@ class BagSource::Impl {
     bag_->choose(topic_.name);
     Message message;
     Read read = bag_->next(message);
-    while (read == Read::damaged) read = bag_->next(message);
-    if (read == Read::end) return;
-    const ros::PictureMessage first = ros::read_picture(type_, message.bytes, fault_);
-    stamped_ = first.stamp_ns != 0;
-    start_ns_ = stamped_ ? first.stamp_ns : message.time_ns;
+    // The first that can be read; where none can, the first of all.
+    std::optional<std::int64_t> recorded;
+    for (; read != Read::end; read = bag_->next(message)) {
+      if (read == Read::damaged) continue;
+      if (!recorded) recorded = message.time_ns;
+      const ros::PictureMessage first = ros::read_picture(type_, message.bytes, fault_);
+      if (!fault_.empty()) continue;
+      stamped_ = first.stamp_ns != 0;
+      start_ns_ = stamped_ ? first.stamp_ns : *recorded;
+      return;
+    }
+    start_ns_ = recorded.value_or(0);
   }
 
   [[nodiscard]] Grab take(const Message& message, Frame& frame) {
     const ros::PictureMessage read = ros::read_picture(type_, message.bytes, fault_);
     const std::int64_t now = stamped_ ? read.stamp_ns : message.time_ns;
-    time_s_ = next_ == 1 ? 0.0 : time_of(now, message.time_ns);
-    last_ns_ = now;
-    last_recorded_ns_ = message.time_ns;
+    time_s_ = time_of(now, message.time_ns, !stamped_ || (fault_.empty() && now != 0));
     frame.time_s = time_s_;
     if (!fault_.empty()) return unreadable(frame, fault_.view());
     const std::string_view fault = decoder_->decode(read.picture, frame.image);
     return fault.empty() ? Grab::frame : unreadable(frame, fault);
   }
 
-  /// Of a picture by its stamp. Where its clock stands still or was set back, time goes on as it
+  /// Of a picture by its stamp. Where the stamps' clock stands still or was set, time goes on as it
   /// does in the recording, and from there by the clock, until that is no longer behind.
-  [[nodiscard]] double time_of(std::int64_t stamp_ns, std::int64_t recorded_ns) {
+  /// @param known whether it has a stamp; otherwise the time is the recording's
+  [[nodiscard]] double time_of(std::int64_t stamp_ns, std::int64_t recorded_ns, bool known) {
+    constexpr double at_once = 1.0;  // more than the recording has: somebody has set the clock
+    const double since_last = began_ ? std::max(0.0, seconds(last_recorded_ns_, recorded_ns)) : 0.0;
+    last_recorded_ns_ = recorded_ns;
+    if (!known) return time_s_ + since_last;
     const double by_stamp = seconds(start_ns_, stamp_ns);
+    const double step = began_ ? seconds(last_ns_, stamp_ns) : 0.0;
+    last_ns_ = stamp_ns;
     if (by_stamp > time_s_) {
       behind_s_ = 0.0;
-    } else if (stamp_ns <= last_ns_) {
-      ++late_;
-      const double since_last = std::max(0.0, seconds(last_recorded_ns_, recorded_ns));
+    } else if (began_ && (step <= 0.0 || step > since_last + at_once)) {
+      if (stamped_) ++late_;
       behind_s_ = time_s_ + since_last - by_stamp;
     }
+    began_ = true;
     return std::max(time_s_, by_stamp + behind_s_);
   }
 
@@ -162,8 +174,9 @@ class BagSource::Impl {
   FixedText fault_;
   bool stamped_ = false;
   std::int64_t start_ns_ = 0;
-  std::int64_t last_ns_ = 0;           // of the picture before, by its stamp
-  std::int64_t last_recorded_ns_ = 0;  // and by the recording
+  bool began_ = false;                 // a picture had a time of its own
+  std::int64_t last_ns_ = 0;           // of the last that had, by its stamp
+  std::int64_t last_recorded_ns_ = 0;  // of the picture before, by the recording
   double behind_s_ = 0.0;              // how far the stamps' clock was set back
   double time_s_ = 0.0;
   std::uint64_t next_ = 0;

@@ -98,6 +98,30 @@ void check_file(const fs::path& path) {
   }
 }
 
+/// Whether a file is there, and has bytes.
+bool has_bytes(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0 && !error;
+}
+
+/// For one that is missing, or empty. Throws SetupError.
+void check_what_lies_beside(const fs::path& path) {
+  std::error_code error;
+  // SQLite names them by the file, not by a link to it.
+  const fs::path file = fs::weakly_canonical(path, error);
+  const std::string name = error ? path.string() : file.string();
+  const fs::path log = name + "-wal";
+  const fs::path journal = name + "-journal";
+  const bool is_rewritten = has_bytes(journal);
+  const bool is_log = has_bytes(log) && (::access(log.c_str(), R_OK) != 0 || holds_batches(log));
+  if (!is_rewritten && !is_log) return;
+  throw SetupError({(is_rewritten ? journal : log).string(),
+                    "belongs to a map that is there no more and was not closed: what was saved "
+                    "last may be in this alone",
+                    "put that map back, or this beside it under its new name; if neither is "
+                    "wanted, remove this"});
+}
+
 }  // namespace
 
 MapFile::State::~State() {
@@ -181,18 +205,7 @@ void MapFile::State::take_form(const MapForm& wanted) {
 }
 
 void check_nothing_is_left_of_another(const fs::path& path) {
-  std::error_code error;
-  if (fs::exists(path, error)) return;
-  const fs::path log = path.string() + "-wal";
-  const fs::path journal = path.string() + "-journal";
-  const bool is_rewritten =
-      fs::is_regular_file(journal, error) && fs::file_size(journal, error) > 0;
-  if (!is_rewritten && !holds_batches(log)) return;
-  throw SetupError({(is_rewritten ? journal : log).string(),
-                    "belongs to a map that is there no more and was not closed: what was saved "
-                    "last may be in this alone",
-                    "put that map back, or this beside it under its new name; if neither is "
-                    "wanted, remove this"});
+  if (!has_bytes(path)) check_what_lies_beside(path);
 }
 
 MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {
@@ -201,8 +214,13 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
   } else {
     check_file(path);
   }
-  check_nothing_is_left_of_another(path);
   Holder holder(path);
+  try {
+    check_nothing_is_left_of_another(path);
+  } catch (const SetupError&) {
+    if (holder.made() && holder.is_at(path)) ::unlink(path.c_str());
+    throw;
+  }
   if (holder.made()) {
     // What is beside a file that was just made is another's: SQLite would share that one's memory
     // with whoever writes it still.

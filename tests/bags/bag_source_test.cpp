@@ -79,22 +79,34 @@ TEST(BagSource, PicturesAndTheirStamps) {
             "of the recording");
 }
 
+constexpr std::int64_t none = -1;     // stamps of pictures without one
+constexpr std::int64_t cut_off = -2;  // and of such that cannot be read
+
 TEST(BagSource, ClocksThatAreSetBackStandStillOrBelongToAnotherPicture) {
   const test::TemporaryFolder folder;
-  const auto times = [&folder](const std::vector<std::int64_t>& stamps_ms) {
+  // Milliseconds, of the recording the times between.
+  const auto times = [&folder](const std::vector<std::int64_t>& stamps,
+                               std::vector<std::uint64_t> between) {
+    between.resize(stamps.size(), 100);
     McapBytes file;
     file.start().schema(1, image).channel(1, 1, "/camera");
     std::uint64_t recorded = 5 * second;
-    for (const std::int64_t stamp : stamps_ms)
-      file.message(1, recorded += second / 10, picture(start + stamp * 1'000'000, 1));
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      recorded += between[i] * 1'000'000;
+      file.message(1, recorded,
+                   stamps[i] == none      ? picture(0, 1)
+                   : stamps[i] == cut_off ? test::ByteVector(1)
+                                          : picture(start + stamps[i] * 1'000'000, 1));
+    }
     const auto source = opened(written(folder, file.finish()));
     std::vector<double> found;
-    for (Frame frame; source->grab(frame) == Grab::frame;) found.push_back(frame.time_s);
+    for (Frame frame; source->grab(frame) != Grab::end;) found.push_back(frame.time_s);
     return found;
   };
   const auto expect = [&times](const std::vector<std::int64_t>& stamps_ms,
-                               const std::vector<double>& seconds) {
-    const std::vector<double> found = times(stamps_ms);
+                               const std::vector<double>& seconds,
+                               const std::vector<std::uint64_t>& between = {}) {
+    const std::vector<double> found = times(stamps_ms, between);
     ASSERT_EQ(found.size(), seconds.size());
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], seconds[i], 1e-6) << i;
   };
@@ -103,6 +115,13 @@ TEST(BagSource, ClocksThatAreSetBackStandStillOrBelongToAnotherPicture) {
   expect({0, 100, 300, 200, 400, 500}, {0, .1, .3, .4, .6, .7});   // two that changed places
   expect({0, 100, 300, 200, 900}, {0, .1, .3, .4, .9});            // and the clock is right again
   expect({0, 0, 0, 0}, {0, .1, .2, .3});
+  // A picture without a stamp, or that cannot be read, says nothing of the clock; nor does a stamp
+  // that fits no other.
+  const std::vector<std::uint64_t> hiccup{100, 100, 100, 300, 0, 0, 100};
+  expect({0, 100, 200, none, 400, 500, 600}, {0, .1, .2, .5, .5, .5, .6}, hiccup);
+  expect({0, 100, 200, cut_off, 400, 500, 600}, {0, .1, .2, .5, .5, .5, .6}, hiccup);
+  expect({0, 100, 200, -999'700, 300, 400}, {0, .1, .2, .45, .46, .56}, {100, 100, 100, 250, 10});
+  expect({cut_off, 0, 100, 200}, {0, 0, .1, .2});
 }
 
 TEST(BagSource, WithoutStampsTheTimesOfTheRecording) {

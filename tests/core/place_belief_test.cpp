@@ -420,6 +420,21 @@ TEST(PlaceBelief, ACarriedRobotLosesItsBeliefAndFindsItself) {
   EXPECT_LE(mistaken, sure / 100) << "what is said of the newest frame ends with the jump";
 }
 
+TEST(PlaceBelief, SaysOfTheNewestFrameHowOftenSuchWasRight) {
+  const oracle::Vectors reference = way(1, 200, 5.0F, 1);
+  PlaceMap map = map_of(reference, settings(Use::localise));
+  Detector detector(settings(Use::localise), map);
+  std::size_t unsure = 0;
+  for (const auto& descriptor : way(1, 200, 5.0F, 2)) {
+    const FrameReport report = detector.step(descriptor);
+    if (!report.now) continue;
+    const double odds = log_odds_now(*detector.evidence());
+    ASSERT_EQ(report.now->probability, static_cast<float>(calibrated_now(odds)));
+    unsure += static_cast<std::size_t>(report.now->probability > 0.1F && odds < 0.0);
+  }
+  EXPECT_GT(unsure, 0U) << "of which the log-odds by themselves say too little";
+}
+
 /// That a robot is carried about speaks for the map while it is found there again and again: not
 /// when it has not been found for long, and not in another drive.
 TEST(PlaceBelief, JumpsSpeakForTheMapUntilTheRobotHasLeftIt) {

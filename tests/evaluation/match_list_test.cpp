@@ -95,6 +95,10 @@ TEST(MatchList, WhatIsWrongIsSaidWithItsLine) {
                          "'uniqueness' is no number"));
   EXPECT_TRUE(test::says(refused("{\"frame\":1,\"match\":2,\"uniqueness\":0,\"probability\":1.5}"),
                          "'probability' is not from 0 to 1"));
+  EXPECT_EQ(
+      answers(good + R"({"frame":null,"match":null,"uniqueness":null,"status":"ended"})").size(),
+      1U)
+      << "no answer";
   for (const std::string status : {"\"accepted\"", "\"\"", "1", "null"}) {
     const std::string line = R"({"frame":1,"match":2,"uniqueness":0,"status":)" + status + "}";
     EXPECT_TRUE(test::says(refused(line), "'status' is none that `run` writes")) << status;

@@ -50,12 +50,24 @@ TEST(Superseded, WhatLiesBesideWhatWasSeenAgainWasNot) {
     all.erase(begin, begin + static_cast<std::ptrdiff_t>(places));
     return all;
   };
-  Sessions sessions(7, but_for(160, 31));
-  sessions.front() = lap(0, 400);
-  EXPECT_EQ(superseded(sessions), Indices{}) << "a side road that six drives have left out";
-  sessions.assign(7, but_for(168, 16));
-  sessions.front() = lap(0, 400);
-  EXPECT_EQ(superseded(sessions), Indices{0}) << "half of either sixteen was seen again";
+  for (std::size_t first = 160; first < 176; ++first) {
+    Sessions sessions(7, but_for(first, 16));
+    sessions.front() = lap(0, 400);
+    EXPECT_EQ(superseded(sessions), Indices{}) << "a side road that six drives have left out";
+    sessions.assign(7, but_for(first, 15));
+    sessions.front() = lap(0, 400);
+    EXPECT_EQ(superseded(sessions), Indices{0}) << "one that is shorter";
+  }
+}
+
+TEST(Superseded, WhatLiesBetweenPlacesThatWereSeenAgainWas) {
+  // Drives at another pace see every third place, each another one.
+  Sessions sessions{lap(0, 400)};
+  for (std::uint64_t drive = 0; drive < 6; ++drive) {
+    Places& some = sessions.emplace_back();
+    for (std::uint64_t first = drive % 3; first < 403; first += 3) some.push_back({0, first});
+  }
+  EXPECT_EQ(superseded(sessions), Indices{0});
 }
 
 TEST(Superseded, ASessionStaysWhileTwoFifthsOfItWasSeenNowhereElse) {

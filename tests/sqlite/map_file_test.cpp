@@ -842,6 +842,18 @@ TEST_F(Map, IsNotBegunBesideWhatIsLeftOfOneThatIsGone) {
   fs::rename(file("elsewhere"), file());
   EXPECT_EQ(content(), saved) << "it is put back";
 
+  // Nor where the name leads to its own, or an empty file has it.
+  fs::rename(file(), file("elsewhere"));
+  fs::create_symlink("map.seqloop", file("link"));
+  const auto by_link = [this] { (void)MapFile::open(file("link"), test::sample_form()); };
+  EXPECT_TRUE(says(setup_error(by_link), "map.seqloop-wal: belongs to a map"));
+  std::ofstream(file()).close();
+  EXPECT_TRUE(says(setup_error(by_link), "map.seqloop-wal: belongs to a map"));
+  EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "map.seqloop-wal: belongs to a map"));
+  fs::remove(file("link"));
+  fs::rename(file("elsewhere"), file());
+  EXPECT_EQ(content(), saved);
+
   // Of a log that was begun, and of an empty journal, nothing is lost.
   fs::rename(file(), file("elsewhere"));
   fs::copy_file(file("map.seqloop-wal"), file("elsewhere-wal"));

@@ -76,8 +76,9 @@ class Lines {
       if (found.probability < 0.0 || found.probability > 1.0)
         blame("'probability' is not from 0 to 1");
     }
+    if (!query || !match) return;
     if (answer.contains("status")) found.accepted = status(answer) == Gate::match;
-    if (!query || !match || faults_.size() > before) return;
+    if (faults_.size() > before) return;
     if (!answers.add(found)) faults_.push_back(Answers::answered_twice(where_, found));
   }
 

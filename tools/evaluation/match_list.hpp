@@ -59,8 +59,8 @@ enum class ThresholdOn : std::uint8_t { uniqueness, score, probability };
 /// undefined or infinite. The columns `probability` and `accepted` may be missing, the keys
 /// `probability` and `status` likewise; an answer of status `match` is accepted.
 /// @param name the file, for messages
-/// Throws SetupError with the line: what is no number, no probability, no acceptance; a column or a
-/// key that is missing; a query that is answered twice.
+/// Throws SetupError with the line: what is no number, no probability, no acceptance, no status; a
+/// column or a key that is missing; a query that is answered twice.
 [[nodiscard]] std::vector<Answer> parse_answers(std::string_view text, const std::string& name,
                                                 ThresholdOn threshold_on);
 

@@ -44,7 +44,11 @@ Keeper::Keeper(std::filesystem::path file, const FleetSettings& settings,
       wire_(participant, settings.name, settings.places),
       saved_(std::chrono::steady_clock::now()) {
   std::error_code error;
-  if (std::filesystem::file_size(path_, error) == 0 || error) return;
+  if (std::filesystem::file_size(path_, error) == 0 || error) {
+    // Told with the first place, it would be too late: what robots tell would wait to the end.
+    sqlite::check_nothing_is_left_of_another(path_);
+    return;
+  }
   file_ = sqlite::MapFile::open(path_, std::nullopt);
   // Killed before it had saved a place, a keeper leaves a file that is like the first robot's.
   if (file_->holds_nothing()) {

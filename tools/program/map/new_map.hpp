@@ -13,7 +13,8 @@ namespace seqloop::program {
 /// `.NAME.partial-PID` in the same folder; the destructor removes that if it was not made.
 class NewMap {
  public:
-  /// Throws SetupError: there is such a file already, the folder is missing or may not be written.
+  /// Throws SetupError: there is such a file already, or what is left of another map; the folder is
+  /// missing or may not be written.
   explicit NewMap(std::filesystem::path path);
   NewMap(const NewMap&) = delete;
   NewMap& operator=(const NewMap&) = delete;

@@ -7,20 +7,51 @@
 namespace seqloop::program {
 namespace {
 
-// All chosen on garage_laps; the page of the room platform/sqlite has the numbers.
-constexpr std::size_t enough_visits = 6;      // sessions
-constexpr std::uint64_t side_by_side = 16;    // places that count as one
+// Chosen on garage_laps, the longest stretch on Nordland's side roads; the page of the room
+// platform/sqlite has the numbers.
+constexpr std::size_t enough_visits = 6;      // stretches
+constexpr std::uint64_t side_by_side = 16;    // places from one that was seen to the next
 constexpr std::size_t longest_stretch = 15;   // places
 constexpr std::size_t most_not_visited = 40;  // percent of a session's places
 
-/// In which sessions places were seen, the newest session first.
-using Visits = std::unordered_map<std::uint64_t, std::vector<std::size_t>>;
+/// What stretches have seen: first places, rising.
+class Visits {
+ public:
+  void add(std::span<const Sighting> places) {
+    std::vector<std::uint64_t>& seen = seen_.emplace_back();
+    for (const Sighting& place : places) seen.push_back(place.first);
+    std::ranges::sort(seen);
+    for (const std::uint64_t first : seen) {
+      std::vector<std::size_t>& here = near_[first / side_by_side];
+      if (here.empty() || here.back() + 1 != seen_.size()) here.push_back(seen_.size() - 1);
+    }
+  }
 
-/// How many sessions have been where a place is.
-std::size_t visits_of(const Visits& visits, std::uint64_t first) {
-  const auto found = visits.find(first / side_by_side);
-  return found == visits.end() ? 0 : found->second.size();
-}
+  /// How many have seen a place, or one before and one behind it that are side by side.
+  [[nodiscard]] std::size_t of(std::uint64_t first) const {
+    const std::uint64_t at = first / side_by_side;
+    std::vector<std::size_t> stretches;
+    for (const std::uint64_t near : {at == 0 ? at : at - 1, at, at + 1}) {
+      const auto found = near_.find(near);
+      if (found == near_.end()) continue;
+      stretches.insert(stretches.end(), found->second.begin(), found->second.end());
+    }
+    std::ranges::sort(stretches);
+    const auto end = std::unique(stretches.begin(), stretches.end());
+    return static_cast<std::size_t>(std::count_if(
+        stretches.begin(), end, [&](std::size_t i) { return has_seen(seen_[i], first); }));
+  }
+
+ private:
+  static bool has_seen(const std::vector<std::uint64_t>& seen, std::uint64_t first) {
+    const auto next = std::ranges::lower_bound(seen, first);
+    if (next == seen.end()) return false;
+    return *next == first || (next != seen.begin() && *next - *std::prev(next) <= side_by_side);
+  }
+
+  std::vector<std::vector<std::uint64_t>> seen_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> near_;  // by sixteen
+};
 
 }  // namespace
 
@@ -33,7 +64,7 @@ std::vector<std::size_t> superseded(std::span<const std::vector<Sighting>> sessi
     std::size_t stretch = 0;
     std::size_t longest = 0;
     for (const Sighting& place : places) {
-      const bool enough = visits_of(visits, place.first) >= enough_visits;
+      const bool enough = visits.of(place.first) >= enough_visits;
       stretch = enough ? 0 : stretch + 1;
       longest = std::max(longest, stretch);
       if (!enough) ++missing;
@@ -41,10 +72,7 @@ std::vector<std::size_t> superseded(std::span<const std::vector<Sighting>> sessi
     const bool goes = !places.empty() && longest <= longest_stretch &&
                       missing * 100 <= places.size() * most_not_visited;
     if (goes) found.insert(found.begin(), session);
-    for (const Sighting& place : places) {
-      std::vector<std::size_t>& seen = visits[place.first / side_by_side];
-      if (seen.empty() || seen.back() != session) seen.push_back(session);
-    }
+    visits.add(places);
   }
   return found;
 }

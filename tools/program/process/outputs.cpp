@@ -59,7 +59,8 @@ bool is_of_a_drive(const fs::path& entry) {
 bool lies_in(const Target& file, const FileUse& read) {
   if (!file.known_by_number() || file.is_folder()) return false;
   const fs::path& folder = read.path;
-  const bool drive = read.flag == "source" || read.flag == "reference" || read.flag == "query";
+  constexpr std::array drives{"source", "reference", "query", "training"};
+  const bool drive = std::ranges::find(drives, read.flag) != drives.end();
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {

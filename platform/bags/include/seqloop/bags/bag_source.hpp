@@ -14,8 +14,9 @@ namespace seqloop::bags {
 /// A drive as a bag: the pictures of one topic (`sensor_msgs/msg/Image`, `CompressedImage`).
 ///
 /// A frame's time is its header's stamp; where the first picture has none, the time at which each
-/// was recorded. It never goes back. A picture that cannot be read, and a part of the bag that
-/// cannot, are a frame that is `unreadable` each.
+/// was recorded. It never goes back: where stamps stand still or were set back, it goes on as it
+/// does in the recording, and from there by the stamps. A picture that cannot be read, and a part
+/// of the bag that cannot, are a frame that is `unreadable` each.
 class BagSource : public FrameSource {
  public:
   /// @param topic empty: the only one with pictures

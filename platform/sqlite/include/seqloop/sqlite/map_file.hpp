@@ -134,8 +134,8 @@ class SaveError : public std::runtime_error {
 };
 
 /// For a file that is to become a map: what lies beside its name must not be of a map that was
-/// moved or removed alone, since it may hold what was saved last. Where there is a file already,
-/// nothing is looked at. Throws SetupError: it is the log or the journal of such a map.
+/// moved or removed alone, since it may hold what was saved last. Nothing is looked at where there
+/// is a file that has anything. Throws SetupError: it is the log or the journal of such a map.
 void check_nothing_is_left_of_another(const std::filesystem::path& path);
 
 /// A map of many sessions in one SQLite database; README.md here has its schema.
