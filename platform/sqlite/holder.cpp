@@ -70,6 +70,10 @@ bool Holder::is_at(const std::filesystem::path& path) const noexcept {
          own.st_dev == there.st_dev && own.st_ino == there.st_ino;
 }
 
+void Holder::remove_made(const std::filesystem::path& path) const noexcept {
+  if (made_ && is_at(path)) ::unlink(path.c_str());
+}
+
 Holder::Holder(Holder&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)), made_(other.made_) {}
 

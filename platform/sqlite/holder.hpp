@@ -28,6 +28,9 @@ class Holder {
   /// Whether a path leads to the file that is held.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const noexcept;
 
+  /// Removes a file that was made here and is still there: it has become no map.
+  void remove_made(const std::filesystem::path& path) const noexcept;
+
  private:
   [[nodiscard]] bool open(const std::filesystem::path& path, int more) noexcept;
 

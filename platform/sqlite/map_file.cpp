@@ -127,7 +127,7 @@ void check_what_lies_beside(const fs::path& path) {
 MapFile::State::~State() {
   if (!writes) {
     // It could not become a map: the disk is full, or the name too long for a log beside it.
-    if (holder.made() && holder.is_at(path)) ::unlink(path.c_str());
+    holder.remove_made(path);
     return;
   }
   // Another file has the name now, and so has the log beside it, which SQLite would remove by name.
@@ -137,9 +137,8 @@ MapFile::State::~State() {
     database.execute("DELETE FROM holder");
     // One file without a log beside it, where nobody reads it just now.
     database.execute("PRAGMA journal_mode = DELETE");
-    if (drops && holder.made() && holder.is_at(path) &&
-        database.number("SELECT count(*) FROM session") == 0) {
-      ::unlink(path.c_str());
+    if (drops && holder.made() && database.number("SELECT count(*) FROM session") == 0) {
+      holder.remove_made(path);
     }
   } catch (const DatabaseError&) {  // the log stays and is read with the file
   }
@@ -218,7 +217,7 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
   try {
     check_nothing_is_left_of_another(path);
   } catch (const SetupError&) {
-    if (holder.made() && holder.is_at(path)) ::unlink(path.c_str());
+    holder.remove_made(path);
     throw;
   }
   if (holder.made()) {

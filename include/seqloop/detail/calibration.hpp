@@ -13,9 +13,8 @@ namespace seqloop {
 [[nodiscard]] double before_calibration(double probability) noexcept;
 
 /// How often the newest frame's likeliest row was right whose log-odds are these, on the drives
-/// that numbers were chosen by. From .9 on it is what they say. Rises with them. @param odds
-/// log-odds
-/// @return 0 .. 1 Work: an exponential. Source: src/README.md, section 6.4.
+/// that numbers were chosen by. From .9 on it is what they say. Rises with them.
+/// @param odds log-odds @return 0 .. 1 Work: an exponential. Source: src/README.md, section 6.4.
 [[nodiscard]] double calibrated_now(double odds) noexcept;
 
 }  // namespace seqloop

@@ -18,12 +18,13 @@ constexpr std::size_t most_not_visited = 40;  // percent of a session's places
 class Visits {
  public:
   void add(std::span<const Sighting> places) {
+    const std::size_t stretch = seen_.size();
     std::vector<std::uint64_t>& seen = seen_.emplace_back();
     for (const Sighting& place : places) seen.push_back(place.first);
     std::ranges::sort(seen);
     for (const std::uint64_t first : seen) {
       std::vector<std::size_t>& here = near_[first / side_by_side];
-      if (here.empty() || here.back() + 1 != seen_.size()) here.push_back(seen_.size() - 1);
+      if (here.empty() || here.back() != stretch) here.push_back(stretch);
     }
   }
 

@@ -18,7 +18,8 @@ struct Sighting {
 };
 
 /// Stretches that a map can do without, because what they saw was seen again often enough since: .6
-/// of their places in six later stretches or more, and no more than 15 in a row were not. They are
+/// of their places in six later stretches or more, and no more than 15 in a row were not. What lies
+/// between two first places of a stretch, 16 apart at most, was seen in it. Stretches are
 /// sessions, or long parts of sessions: lines run through the places of one, and find little in
 /// short pieces.
 /// @param stretches the oldest first, with their places in order
