@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "sqlite/rollback_journal.hpp"
 #include "sqlite/state.hpp"
 #include "sqlite/write_ahead_log.hpp"
 
@@ -112,7 +113,7 @@ void check_what_lies_beside(const fs::path& path) {
   const std::string name = error ? path.string() : file.string();
   const fs::path log = name + "-wal";
   const fs::path journal = name + "-journal";
-  const bool is_rewritten = has_bytes(journal);
+  const bool is_rewritten = may_be_needed(journal);
   const bool is_log = has_bytes(log) && (::access(log.c_str(), R_OK) != 0 || holds_batches(log));
   if (!is_rewritten && !is_log) return;
   throw SetupError({(is_rewritten ? journal : log).string(),

@@ -154,7 +154,7 @@ TEST_F(MapVerb, WhatAKilledOneLeftIsRemoved) {
 TEST_F(MapVerb, NothingIsMadeBesideWhatIsLeftOfAnotherMap) {
   make("a");
   make("b");
-  folder_.write("new-journal", "pages of another");
+  folder_.write("new-journal", test::journal_of(3));
   const std::string words = "new-journal: belongs to a map that is there no more";
   expect_refused("merge a b --out new", words);
   expect_refused("recover a new", words);

@@ -862,8 +862,24 @@ TEST_F(Map, IsNotBegunBesideWhatIsLeftOfOneThatIsGone) {
   (void)open();
   EXPECT_EQ(content(MapFile::read_only(file("elsewhere"))), saved);
   fs::remove(file());
-  std::ofstream(file().string() + "-journal") << "pages";
+  std::ofstream(file().string() + "-journal") << test::journal_of(3);
   EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "-journal: belongs to a map"));
+}
+
+TEST_F(Map, IsBegunAnewWhereItsMakingWasCutShort) {
+  std::string unsynced = test::journal_of(3);
+  unsynced.replace(0, 8, 8, '\0');
+  const fs::path journal = file().string() + "-journal";
+  for (const std::string& left :
+       {test::journal_of(0), unsynced, test::journal_of(3).substr(0, 19)}) {
+    for (const bool is_empty : {true, false}) {
+      if (is_empty) std::ofstream(file()).close();
+      std::ofstream(journal) << left;
+      EXPECT_EQ(open().sessions().size(), 0U);
+      EXPECT_FALSE(fs::exists(journal));
+      fs::remove(file());
+    }
+  }
 }
 
 TEST_F(Map, ThatIsNoMoreWhereItWasSavesNothing) {

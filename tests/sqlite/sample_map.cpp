@@ -77,6 +77,14 @@ void set_frame(const std::filesystem::path& path, std::uint64_t number, std::uin
       .run();
 }
 
+std::string journal_of(std::uint8_t pages) {
+  std::string head("\xD9\xD5\x05\xF9\x20\xA1\x63\xD7");
+  head.resize(28, '\0');
+  head[11] = 1;  // pages in it
+  head[19] = static_cast<char>(pages);
+  return head;
+}
+
 std::string content_of(const MapFile& map, std::string& fault) {
   std::string text;
   const auto add = [&text](const auto&... values) {

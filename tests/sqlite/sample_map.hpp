@@ -27,6 +27,9 @@ void save_sample(sqlite::MapFile& map, std::int64_t session, std::uint64_t frame
 /// Gives a place of a map another frame, with the right checksum: `save` would refuse it.
 void set_frame(const std::filesystem::path& path, std::uint64_t number, std::uint64_t frame);
 
+/// The head of the journal of a file that had so many pages before it was rewritten.
+[[nodiscard]] std::string journal_of(std::uint8_t pages);
+
 /// All that a map holds, as text; two maps that say the same are the same. `check` must find
 /// nothing wrong. @param fault told what is wrong, else
 [[nodiscard]] std::string content_of(const sqlite::MapFile& map, std::string& fault);
