@@ -18,21 +18,25 @@ RunningStatistics::RunningStatistics(Arena& arena, std::size_t descriptor_size,
       last_taken_(arena.take<float>(names.last_taken, descriptor_size)) {}
 
 void RunningStatistics::observe(std::span<const float> descriptor) noexcept {
-  observe_weighted(descriptor, 1.0 / static_cast<double>(frames_ + 1));
+  const double weight = 1.0 / static_cast<double>(frames_ + 1);
+  observe_weighted(descriptor, weight, weight);
 }
 
 void RunningStatistics::follow(std::span<const float> descriptor,
                                const Standardisation& how) noexcept {
-  if (frames_ == 0) start_flat(descriptor, how.prior_frames);
+  if (frames_ == 0) guess(descriptor, how.prior_frames);
   // Two frames that have nothing to do with each other are on average twice the sum of the
   // variances apart, squared. A tenth of that is a scene that has changed.
   constexpr double changed = 0.1 * 2.0;
   if (squared_distance(last_taken_, descriptor) < changed * variances_) return;
-  observe_weighted(descriptor, 1.0 / static_cast<double>(std::min(frames_ + 1, how.horizon)));
+  const auto weight = [&how](std::size_t frames) {
+    return 1.0 / static_cast<double>(std::min(frames + 1, how.horizon));
+  };
+  observe_weighted(descriptor, weight(frames_ - guessed_), weight(frames_));
   std::ranges::copy(descriptor, last_taken_.begin());
 }
 
-void RunningStatistics::start_flat(std::span<const float> descriptor, std::size_t frames) noexcept {
+void RunningStatistics::guess(std::span<const float> descriptor, std::size_t frames) noexcept {
   const auto size = static_cast<double>(descriptor.size());
   const double mean =
       sum_in_lanes(descriptor.size(),
@@ -45,20 +49,26 @@ void RunningStatistics::start_flat(std::span<const float> descriptor, std::size_
                                          return difference * difference;
                                        }) /
                           size;
-  std::ranges::fill(mean_, mean);
-  std::ranges::fill(variance_, variance);
+  // What all frames have in common is as likely the first one's profile as nothing, and so they
+  // vary less than its values do among themselves.
+  constexpr double varies_less = 0.25;
+  for (std::size_t d = 0; d < mean_.size(); ++d) {
+    mean_[d] = 0.5 * (mean + static_cast<double>(descriptor[d]));
+  }
+  std::ranges::fill(variance_, varies_less * variance);
   sum_up();
   frames_ = frames;
+  guessed_ = frames > 0 ? frames - 1 : 0;
 }
 
-void RunningStatistics::observe_weighted(std::span<const float> descriptor,
+void RunningStatistics::observe_weighted(std::span<const float> descriptor, double of_mean,
                                          double weight) noexcept {
   const double rest = 1.0 - weight;
   double* mean = mean_.data();
   double* variance = variance_.data();
   for (std::size_t d = 0; d < mean_.size(); ++d) {
     const double difference = static_cast<double>(descriptor[d]) - mean[d];
-    mean[d] += weight * difference;
+    mean[d] += of_mean * difference;
     variance[d] = rest * (variance[d] + weight * difference * difference);
   }
   sum_up();
@@ -80,6 +90,7 @@ void RunningStatistics::start_from(const RunningStatistics& other, std::size_t f
   std::ranges::fill(last_taken_, 0.0F);
   sum_up();
   frames_ = std::min(frames, other.frames_);
+  guessed_ = 0;
 }
 
 bool RunningStatistics::restore(std::span<const double> mean, std::span<const double> variance,
@@ -95,6 +106,7 @@ bool RunningStatistics::restore(std::span<const double> mean, std::span<const do
   sum_up();
   frames_ = static_cast<std::size_t>(
       std::min<std::uint64_t>(frames, std::numeric_limits<std::size_t>::max()));
+  guessed_ = 0;
   return true;
 }
 

@@ -126,7 +126,7 @@ TEST(RunningStatistics, AHaltTeachesThemNothing) {
   EXPECT_EQ(statistics.mean()[0], before);
 }
 
-TEST(RunningStatistics, StartFlatFromAFirstFrame) {
+TEST(RunningStatistics, AreGuessedFromAFirstFrame) {
   TestArena memory;
   RunningStatistics statistics(memory.arena, 4);
   Standardisation how;
@@ -135,9 +135,46 @@ TEST(RunningStatistics, StartFlatFromAFirstFrame) {
   EXPECT_EQ(statistics.frames(), 20U);
   for (std::size_t d = 0; d < 4; ++d) {
     const double off = d < 2 ? -1.0 : 1.0;
-    EXPECT_NEAR(statistics.mean()[d], 2.0 + off / 20.0, 1e-12) << "one frame beside 19 flat ones";
-    EXPECT_NEAR(statistics.variance()[d], 0.95 * (1.0 + 1.0 / 20.0), 1e-12);
+    EXPECT_NEAR(statistics.mean()[d], 2.0 + .75 * off, 1e-12) << "beside one guess";
+    EXPECT_NEAR(statistics.variance()[d], 0.95 * (0.25 + 0.25 / 20.0), 1e-12) << "beside 19";
   }
+  std::vector<float> out(4);
+  EXPECT_TRUE(statistics.standardise(std::vector<float>{1.0F, 1.0F, 3.0F, 3.0F}, out));
+}
+
+// A lens that is covered as the camera is switched on, say.
+TEST(RunningStatistics, SoonForgetAFirstFrameUnlikeAllOthers) {
+  std::mt19937 random(13);
+  std::normal_distribution<float> normal(0.0F, 0.1F);
+  TestArena memory;
+  RunningStatistics statistics(memory.arena, 2);
+  statistics.follow(std::vector<float>{-8.0F, 3.0F}, {});
+  for (int i = 0; i < 40; ++i) {
+    statistics.follow(std::vector<float>{5.0F + normal(random), 1.0F + 20.0F * normal(random)}, {});
+  }
+  EXPECT_GT(statistics.frames(), Standardisation{}.prior_frames + 10U);
+  EXPECT_NEAR(statistics.mean()[0], 5.0, 1.5);
+}
+
+// As those of many networks: a profile, and a little of their own. A robot that stands shows noise.
+TEST(RunningStatistics, LearnFromFramesThatHaveMuchInCommonAndNotFromNoise) {
+  const auto taken = [](double own, int frames) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> normal;
+    TestArena memory;
+    RunningStatistics statistics(memory.arena, 64);
+    std::vector<float> frame(64);
+    for (int i = 0; i < frames; ++i) {
+      for (std::size_t d = 0; d < frame.size(); ++d) {
+        frame[d] = static_cast<float>(static_cast<double>(d % 8) + own * normal(random));
+      }
+      statistics.follow(frame, {});
+    }
+    return statistics.frames() - Standardisation{}.prior_frames;
+  };
+  EXPECT_EQ(taken(2.0, 60), 60U);
+  EXPECT_EQ(taken(.5, 60), 60U) << "a twenty-first of what the profile varies by";
+  EXPECT_EQ(taken(.2, 300), 1U);
 }
 
 }  // namespace

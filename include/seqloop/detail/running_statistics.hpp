@@ -32,9 +32,9 @@ class RunningStatistics {
 
   /// Moves on with a drive: the same with a weight of at least 1 / horizon, so that older frames
   /// fade. A frame that looks like the last one that was taken in is left out, so that a robot that
-  /// stands still does not forget the drive. One that nothing is known of starts from its first
-  /// frame, as if that had been seen for `prior_frames`: every feature gets the mean and the
-  /// variance of all of its values.
+  /// stands still does not forget the drive. Of a drive that nothing is known of they are guessed
+  /// from its first frame: every feature gets the mean of its own value and of that of all, as if
+  /// one frame had shown it, and a quarter of the variance of all values, as if `prior_frames` had.
   void follow(std::span<const float> descriptor, const Standardisation& how) noexcept;
 
   /// Starts from what another drive knows, as if that had been seen for `frames` frames (no more
@@ -49,7 +49,7 @@ class RunningStatistics {
                              std::uint64_t frames) noexcept;
 
   /// Knows nothing any more: the next frame that is observed is the first.
-  void forget() noexcept { frames_ = 0; }
+  void forget() noexcept { frames_ = guessed_ = 0; }
 
   /// Subtracts the mean, divides by the deviation (but by no less than a tenth of the average
   /// deviation), and divides the whole by its L2 norm.
@@ -68,11 +68,12 @@ class RunningStatistics {
   [[nodiscard]] std::span<const double> variance() const noexcept { return variance_; }
 
  private:
-  void start_flat(std::span<const float> descriptor, std::size_t frames) noexcept;
-  void observe_weighted(std::span<const float> descriptor, double weight) noexcept;
+  void guess(std::span<const float> descriptor, std::size_t frames) noexcept;
+  void observe_weighted(std::span<const float> descriptor, double of_mean, double weight) noexcept;
   void sum_up() noexcept;
 
   std::size_t frames_ = 0;
+  std::size_t guessed_ = 0;      // of these, which say nothing of the mean
   std::span<double> mean_;       // [D]
   std::span<double> variance_;   // [D], of the population
   std::span<float> deviation_;   // [D], its square root
