@@ -208,6 +208,46 @@ TEST(Keyframes, ThatNeverCameAreAsManyInOneCallAsInSeveral) {
   EXPECT_EQ(once.skip(16), sum);
 }
 
+// As of a camera every second picture of which cannot be read: nobody knows that the scene takes
+// more than a frame to change. Where it does, what is seen of it shows that.
+TEST(Keyframes, AreAllThatAreSeenWhereOthersAreLost) {
+  const auto seen = [](const Vectors& drive, std::size_t lost) {
+    ArenaMemory memory(1 << 16, {});
+    Arena arena(memory.span());
+    Keyframes keyframes(arena, drive.front().size());
+    const double variance = variance_of(drive);
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < drive.size(); at += lost + 1) {
+      count += keyframes.take(drive[at], variance) ? 1U : 0U;
+      static_cast<void>(keyframes.skip(lost));
+    }
+    return std::pair(count, keyframes.is_dense());
+  };
+  const Vectors fast = test::way(1, 120, 0.0F, 1);
+  for (const std::size_t lost : {1U, 2U, 5U, 9U}) {
+    EXPECT_EQ(seen(fast, lost), std::pair(fast.size() / (lost + 1), false)) << lost;
+  }
+  const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 8, 1);
+  EXPECT_TRUE(seen(slow, 1).second);
+}
+
+// What was known of it before holds where most are lost.
+TEST(Keyframes, StayFewWhereADriveIsDenseAndMostIsLost) {
+  const Vectors slow = test::slowly(test::way(1, 300, 0.0F, 1), 4, 1);
+  const double variance = variance_of(slow);
+  ArenaMemory memory(1 << 16, {});
+  Arena arena(memory.span());
+  Keyframes keyframes(arena, slow.front().size());
+  keyframes.go_by(0.25);
+  for (std::size_t at = 0; at < 400; ++at) (void)keyframes.take(slow[at], variance);
+  ASSERT_TRUE(keyframes.is_dense());
+  for (std::size_t at = 400; at < slow.size(); at += 4) {
+    (void)keyframes.take(slow[at], variance);
+    (void)keyframes.skip(3);
+  }
+  EXPECT_TRUE(keyframes.is_dense());
+}
+
 TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
   const Vectors slow = test::slowly(test::way(1, 200, 0.0F, 1), 3, 1);
   const double variance = variance_of(slow);

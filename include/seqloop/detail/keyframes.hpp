@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/usual.hpp"
@@ -34,6 +35,7 @@ class Keyframes {
     changes_ = 0;
     is_dense_ = false;
     since_change_ = 0;
+    hidden_ = 0;
     usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
     unseen_ = 0.0;
@@ -76,10 +78,11 @@ class Keyframes {
   /// Whether it changed so from the keyframe before the newest one to that.
   [[nodiscard]] bool is_cut() const noexcept { return since_cut_ == 0; }
 
-  /// Frames that never came, or cannot be read, count as frames that did.
+  /// Frames that never came, or cannot be read. Where the next one that does still looks like the
+  /// last change, they did so, too; else the scene changed with one of them, or with that one.
   /// @return how many keyframes they are by what is usual, of several calls on end together
   [[nodiscard]] std::uint64_t skip(std::uint64_t frames) noexcept {
-    since_change_ += frames;
+    hidden_ += frames;
     if (!is_dense_) return frames;
     unseen_ += static_cast<double>(frames) / usually_apart_.mean();
     const auto keyframes = static_cast<std::uint64_t>(unseen_);
@@ -94,11 +97,18 @@ class Keyframes {
   /// Whether a frame looks unlike the last that did. @param differs squared distance of the two
   /// @param unrelated of two frames that have nothing to do with each other
   bool take_change(double differs, double unrelated) noexcept {
-    const std::uint64_t frames = ++since_change_;
     const double change = is_dense_ ? change_where_dense_ : change_;
-    if (differs <= change * unrelated) return false;
+    const std::uint64_t hidden = std::exchange(hidden_, 0);
+    if (differs <= change * unrelated) {
+      since_change_ += hidden + 1;
+      return false;
+    }
     // A robot that stands says nothing of how fast it goes.
-    usually_apart_.take(static_cast<double>(std::min(frames, most_apart)));
+    const auto apart = [](std::uint64_t frames) {
+      return static_cast<double>(std::min(frames, most_apart));
+    };
+    usually_apart_.take(std::clamp(usually_apart_.mean(), apart(since_change_ + 1),
+                                   apart(since_change_ + hidden + 1)));
     ++changes_;
     since_change_ = 0;
     decide();
@@ -152,7 +162,8 @@ class Keyframes {
   bool has_map_ = false;               // is matched with
   bool is_dense_ = false;
   std::uint64_t changes_ = 0;
-  std::uint64_t since_change_ = 0;  // frames
+  std::uint64_t since_change_ = 0;  // frames up to the last one that still looked like it
+  std::uint64_t hidden_ = 0;        // since then
   double unseen_ = 0.0;             // part of a keyframe that unseen frames were
   Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
