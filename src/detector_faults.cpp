@@ -51,7 +51,8 @@ Faults detector_faults(const MatcherConfig& config, const PlaceMap& map) {
     faults.push_back(
         {"map",
          map.standardises() ? "its places are standardised" : "its places are not standardised",
-         "standardise both the map and the query, or neither"});
+         "standardise both the map and the query, or neither; a map that is filled before its "
+         "detector is there has to be made to localise in (localise)"});
   }
   return faults;
 }

@@ -104,6 +104,8 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
     frame += std::exchange(no_places_, 0);
     added_.standardise(descriptor, standardised_);
     descriptor = standardised_;
+  } else {
+    holds_raw_ = true;
   }
   rows_.store(append(frame, order_.next_number()), descriptor);
   space(size() - 1);

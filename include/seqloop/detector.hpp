@@ -37,6 +37,9 @@ namespace seqloop {
 /// part of the map, the best first, until the frame's budget of distances is spent: no frame's work
 /// grows with the map.
 ///
+/// Frames are of one camera, in the order in which they were taken: several cameras of a robot are
+/// several detectors.
+///
 /// Threads: one at a time. Localising only reads the map, so that detectors in threads of their own
 /// may share one that nobody changes.
 class Detector {

@@ -96,8 +96,8 @@ struct Belief {
 
 /// What one step has to say.
 struct FrameReport {
-  /// The final answers that became due with this step, in order of their frames; in the detector's
-  /// memory, until its next step.
+  /// The final answers that became due with this step, in order of their frames; later steps may
+  /// answer earlier ones. In the detector's memory, until its next step.
   std::span<const Answer> answers;
   std::optional<Belief> now;  ///< of the newest frame; none before places can be compared
 

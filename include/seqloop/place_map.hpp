@@ -19,6 +19,9 @@ namespace seqloop {
 
 /// The places of one drive or several, in the order in which they were seen: R in the paper. The
 /// places of a drive are a session. Room for all of them is taken at construction.
+///
+/// A detector refers to its map, which has to stay where it is. What was moved from may only be
+/// destroyed, or be given another.
 class PlaceMap {
  public:
   /// Bytes of every buffer. Errors: SetupError, all faults at once.
@@ -190,8 +193,9 @@ class PlaceMap {
 
   [[nodiscard]] FullMap full_map() const noexcept { return full_map_; }
 
-  /// Whether its places are standardised.
-  [[nodiscard]] bool standardises() const noexcept { return standardisation_.on; }
+  /// Whether its places are standardised. Those are not that `add` gave a map which was made for
+  /// one drive that closes loops: only its detector standardises that.
+  [[nodiscard]] bool standardises() const noexcept { return standardisation_.on && !holds_raw_; }
 
   /// Statistics of the newest session that has any: a drive starts from them. `frames() == 0` where
   /// nothing was learnt.
@@ -219,6 +223,7 @@ class PlaceMap {
 
   ArenaMemory memory_;
   Standardisation standardisation_;
+  bool holds_raw_ = false;  // places that nobody has standardised
   FullMap full_map_;
   bool learning_ = false;  // the newest session, which has no place yet
   RunningStatistics statistics_;

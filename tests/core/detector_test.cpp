@@ -589,6 +589,14 @@ TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {
   EXPECT_THROW(Detector(other, raw), SetupError);
   other.use = Use::close_loops;
   EXPECT_THROW(Detector(other, raw), SetupError);
+  // Made for a drive that closes loops, it leaves standardising to the detector.
+  PlaceMap filled(other, {30, 9});
+  for (const auto& place : drive) ASSERT_TRUE(filled.add(place));
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    other.use = use;
+    EXPECT_TRUE(test::says(test::setup_error([&] { const Detector none(other, filled); }),
+                           "its places are not standardised"));
+  }
   other = config;
   other.arithmetic = Arithmetic::int8;
   EXPECT_THROW(Detector(other, raw), SetupError);
