@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -105,14 +106,19 @@ bool has_bytes(const fs::path& path) {
   return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0 && !error;
 }
 
+constexpr std::array<std::string_view, 3> tails{"-wal", "-shm", "-journal"};
+
+/// A file that SQLite keeps beside another: it names them by the file, not by a link to it.
+fs::path beside(const fs::path& path, std::string_view tail) {
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(path, error);
+  return (error ? path : file).string() + std::string(tail);
+}
+
 /// For one that is missing, or empty. Throws SetupError.
 void check_what_lies_beside(const fs::path& path) {
-  std::error_code error;
-  // SQLite names them by the file, not by a link to it.
-  const fs::path file = fs::weakly_canonical(path, error);
-  const std::string name = error ? path.string() : file.string();
-  const fs::path log = name + "-wal";
-  const fs::path journal = name + "-journal";
+  const fs::path log = beside(path, "-wal");
+  const fs::path journal = beside(path, "-journal");
   const bool is_rewritten = may_be_needed(journal);
   const bool is_log = has_bytes(log) && (::access(log.c_str(), R_OK) != 0 || holds_batches(log));
   if (!is_rewritten && !is_log) return;
@@ -208,6 +214,11 @@ void check_nothing_is_left_of_another(const fs::path& path) {
   if (!has_bytes(path)) check_what_lies_beside(path);
 }
 
+void remove_what_is_left(const fs::path& path) noexcept {
+  std::error_code error;
+  for (const std::string_view tail : tails) fs::remove(beside(path, tail), error);
+}
+
 MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {
   if (form) {
     check_form(path, *form);
@@ -222,10 +233,8 @@ MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) 
     throw;
   }
   if (holder.made()) {
-    // What is beside a file that was just made is another's: SQLite would share that one's memory
-    // with whoever writes it still.
-    std::error_code error;
-    for (const char* tail : {"-wal", "-shm", "-journal"}) fs::remove(path.string() + tail, error);
+    // SQLite would share its memory with whoever writes the other still.
+    remove_what_is_left(path);
   }
   try {
     auto state = std::make_unique<State>(path, std::move(holder),

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "sqlite/rollback_journal.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <fstream>
 #include <span>
+#include <system_error>
 
 namespace seqloop::sqlite {
 
 bool may_be_needed(const std::filesystem::path& journal) {
-  if (::access(journal.c_str(), R_OK) != 0) return errno != ENOENT && errno != ENOTDIR;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(journal, error)) return false;
   std::ifstream file(journal, std::ios::binary);
+  if (!file) return true;
   std::array<char, 20> head{};
   if (!file.read(head.data(), head.size())) return false;
   // The magic is written last, when all else is on the disk.

@@ -202,7 +202,7 @@ void MapFile::save(std::int64_t session, const MapBatch& batch) {
         map.counts.thumbnails += sqlite3_changes(map.database.handle());
       }
     }
-    facts.frames = batch.frames;
+    facts.frames = std::max(facts.frames, batch.frames);
     facts.places += batch.records.size();
     facts.statistics = facts.statistics || batch.statistics != nullptr;
     map.save_session(facts);

@@ -124,6 +124,7 @@ TEST_F(MapVerb, MergePutsMapsBehindEachOther) {
   expect(0, "check c", "160 places in 4 sessions");
   EXPECT_EQ(listing().find("partial"), std::string::npos);
   expect_refused("merge a b --out b", "there is such a file already");
+  expect_refused("merge a b --out none/c", "none/c: its folder does not exist; create ");
   expect_refused("merge a none --out d", "there is no such map");
   expect_refused("merge a --out d", "seqloop map merge A B");
   expect_refused("merge a b ./a --out d", "./a: the same map is named twice");
@@ -162,6 +163,23 @@ TEST_F(MapVerb, NothingIsMadeBesideWhatIsLeftOfAnotherMap) {
   expect_refused("import folder --out new", words);
   EXPECT_FALSE(exists("new"));
   EXPECT_EQ(listing().find(".partial"), std::string::npos) << listing();
+}
+
+// SQLite would make the new map what the other was before its first page: empty.
+TEST_F(MapVerb, WhatIsMadeBesideAMapWhoseMakingWasCutShortIsWhole) {
+  make("a");
+  make("b");
+  expect(0, "export a --out folder", "folder: 80 places");
+  for (const auto& [verb, places] : {std::pair{"merge a b --out new", "new: 160 places"},
+                                     {"recover a new", "new: 80 places"},
+                                     {"import folder --out new", "new: 80 places"}}) {
+    SCOPED_TRACE(verb);
+    folder_.write("new-journal", test::journal_of(0));
+    expect(0, verb, places);
+    EXPECT_FALSE(exists("new-journal"));
+    EXPECT_GT(content("new").size(), content("a").size() - 1);
+    fs::remove(file("new"));
+  }
 }
 
 TEST_F(MapVerb, WhatIsExportedIsImportedAsItWas) {

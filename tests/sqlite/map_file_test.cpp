@@ -301,6 +301,8 @@ TEST_F(Map, RefusesBatchesThatDoNotFit) {
   EXPECT_THROW(map.save(first, {.frames = 6, .thumbnails = picture}), std::invalid_argument);
   EXPECT_THROW(map.save(first, {.frames = none}), std::invalid_argument);
   EXPECT_THROW((void)map.retire("a", 0, 4, {}, 0), std::invalid_argument);
+  map.save(first, {});
+  EXPECT_EQ(map.sessions()[0].frames, 6U) << "what is dealt with stays so";
   EXPECT_EQ(content(map), before);
   const std::string fault = setup_error([&] { (void)map.begin_session("a", 0, ""); });
   EXPECT_TRUE(says(fault, "there is a session 'a' already"));
@@ -864,6 +866,13 @@ TEST_F(Map, IsNotBegunBesideWhatIsLeftOfOneThatIsGone) {
   fs::remove(file());
   std::ofstream(file().string() + "-journal") << test::journal_of(3);
   EXPECT_TRUE(says(setup_error([this] { (void)open(); }), "-journal: belongs to a map"));
+}
+
+TEST_F(Map, IsRefusedForItsNameAndNotForAJournalThatCannotBe) {
+  const fs::path longest = file(std::string(250, 'm'));
+  const std::string fault = setup_error([&] { (void)MapFile::open(longest, test::sample_form()); });
+  EXPECT_FALSE(fault.empty());
+  EXPECT_FALSE(says(fault, "belongs to a map")) << fault;
 }
 
 TEST_F(Map, IsBegunAnewWhereItsMakingWasCutShort) {

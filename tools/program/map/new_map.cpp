@@ -49,6 +49,10 @@ NewMap::NewMap(fs::path path) : path_(std::move(path)) {
   if (fs::exists(fs::symlink_status(path_, error))) {
     throw SetupError({name, "there is such a file already", "choose another name, or remove it"});
   }
+  const fs::path folder = fs::absolute(path_, error).parent_path();
+  if (!fs::exists(folder, error) && !error) {
+    throw SetupError({name, "its folder does not exist", "create " + folder.string() + " first"});
+  }
   sqlite::check_nothing_is_left_of_another(path_);
   const files::Partial made = files::make_partial(path_, files::PartialKind::file);
   if (made.descriptor < 0) {
@@ -86,6 +90,7 @@ void NewMap::make(const std::function<void()>& fill) {
     throw sqlite::SaveError(text);
   }
   map_.reset();
+  sqlite::remove_what_is_left(path_);
   const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
   if (::rename(partial_.c_str(), path_.c_str()) != 0) {
     throw files::IoError(path_.string(), std::strerror(errno));

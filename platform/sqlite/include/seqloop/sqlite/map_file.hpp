@@ -110,10 +110,10 @@ struct ThumbnailFacts {
 
 /// What is saved at once: all of it or nothing.
 struct MapBatch {
-  std::uint64_t frames = 0;                ///< of the session are dealt with, these among them
-  std::span<const PlaceRecord> records{};  ///< new places; each can follow the one before it
-  std::span<const std::byte> places{};     ///< [records * place_bytes]
-  std::span<const SavedLink> links{};      ///< `session` is not looked at
+  std::uint64_t frames = 0;  ///< of the session are dealt with, these among them; never fewer again
+  std::span<const PlaceRecord> records{};        ///< new places; each can follow the one before it
+  std::span<const std::byte> places{};           ///< [records * place_bytes]
+  std::span<const SavedLink> links{};            ///< `session` is not looked at
   std::span<const SavedThumbnail> thumbnails{};  ///< the first one of a place stays
   std::span<const std::uint64_t> removed{};      ///< places that go; unknown ones are left out
   const SavedStatistics* statistics = nullptr;   ///< nothing: as they were
@@ -137,6 +137,10 @@ class SaveError : public std::runtime_error {
 /// moved or removed alone, since it may hold what was saved last. Nothing is looked at where there
 /// is a file that has anything. Throws SetupError: it is the log or the journal of such a map.
 void check_nothing_is_left_of_another(const std::filesystem::path& path);
+
+/// What may lie beside such a file after that, as of a map whose making was cut short, goes: SQLite
+/// would take it for its own. Nobody may write the file.
+void remove_what_is_left(const std::filesystem::path& path) noexcept;
 
 /// A map of many sessions in one SQLite database; README.md here has its schema.
 ///
@@ -172,8 +176,8 @@ class MapFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
   [[nodiscard]] const MapForm& form() const noexcept;
 
-  /// Whether no session has a frame: all were forgotten, or whoever began them was killed. Nothing
-  /// has the map's form then. Throws SetupError: damaged.
+  /// Whether no session has a frame, a place or statistics: all were forgotten, or whoever began
+  /// them was killed. Nothing has the map's form then. Throws SetupError: damaged.
   [[nodiscard]] bool holds_nothing() const;
 
   /// All sessions, oldest first. Throws SetupError: damaged.
