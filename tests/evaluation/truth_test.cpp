@@ -72,6 +72,7 @@ TEST(Truth, IsReadAsOthersWriteTables) {
 TEST(Truth, TellsAllThatIsWrongWithAFile) {
   EXPECT_TRUE(test::says(faults_of("query,query,a,a\n1,2,3,4\n"), "'query' is there twice"));
   EXPECT_TRUE(test::says(faults_of("query,query,a,a\n1,2,3,4\n"), "'a' is there twice"));
+  EXPECT_TRUE(test::says(faults_of("0,0\n1,1\n"), "t.csv:1: has numbers, and not the names"));
   EXPECT_TRUE(test::says(faults_of("a,b\n1,2\n"), "'query'"));
   EXPECT_TRUE(test::says(faults_of("a,b\n1,2\n"), "'reference'"));
   EXPECT_TRUE(

@@ -275,6 +275,12 @@ TEST_F(BadInput, CommandLines) {
   folder_.write("c.toml", "");
   expect_refused("match --config c.toml --config c.toml",
                  {"config: given more than once", "query"});
+  expect_match_refused(
+      "--reference good.npy --query good.npy --paper=maybe --read-only=1",
+      {"paper: 'maybe' is neither true nor false", "read-only: '1' is neither true nor false"});
+  expect_match_refused("--reference good.npy --query good.npy --paper --paper=false",
+                       {"paper: given more than once"});
+
   expect_refused("match --hepl", {"did you mean --help"});
   folder_.write("no.seqloop", "places");
   for (const char* verb : {"run --source none", "match --query none"}) {

@@ -68,6 +68,12 @@ std::errc parse(const std::string& cell, Number& value) {
   return result.ptr == end ? result.ec : std::errc::invalid_argument;
 }
 
+/// Names of columns are none.
+bool is_number(const std::string& cell) {
+  double value = 0.0;
+  return cell.empty() || parse(cell, value) == std::errc();
+}
+
 }  // namespace
 
 CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(name)) {
@@ -107,6 +113,10 @@ void CsvTable::take_header(std::string_view line, const std::string& where) {
                       "write commas between them, and decimal points in numbers"});
   }
   header_ = cells(line, where);
+  if (std::ranges::all_of(header_, is_number)) {
+    throw SetupError({where, "has numbers, and not the names of columns",
+                      "write a line with the names before it, such as query,reference"});
+  }
   Faults faults;
   for (auto cell = header_.begin(); cell != header_.end(); ++cell) {
     // Spreadsheets leave columns behind that have neither a name nor cells.

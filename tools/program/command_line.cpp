@@ -113,12 +113,11 @@ void add_to(CLI::App& app, const Verb& verb, Given& given, bool show_all) {
   for (const Option& option : verb.options.options()) {
     auto& [known, values] = given.values.emplace_back();
     known = &option;
-    CLI::Option* flag =
-        option.kind == ValueKind::flag
-            ? sub->add_flag_callback(
-                  "--" + option.name, [&into = values] { into = {"true"}; }, in_lines(option.help))
-            : add_value(*sub, option.name, values, in_lines(option.help), option.kind,
-                        option.may_be_bare);
+    CLI::Option* flag = option.kind == ValueKind::flag
+                            ? sub->add_flag("--" + option.name, values, in_lines(option.help))
+                                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                            : add_value(*sub, option.name, values, in_lines(option.help),
+                                        option.kind, option.may_be_bare);
     // No name: CLI11 does not show it.
     flag->group(option.shown == Shown::in_help || show_all ? option.section : "");
   }
@@ -171,7 +170,10 @@ Faults settle(const Verb& verb, const Given& given, const std::vector<std::strin
   for (const auto& [option, values] : given.values) {
     if (values.empty()) continue;
     set_already.insert(option->name);
-    if (values.size() > 1) faults.push_back({option->name, "given more than once"});
+    // A switch may well be turned on twice.
+    const bool differ = option->kind != ValueKind::flag ||
+                        std::ranges::count(values, values.front()) != std::ssize(values);
+    if (values.size() > 1 && differ) faults.push_back({option->name, "given more than once"});
     for (Fault& fault : OptionTable::set(*option, values.front())) {
       faults.push_back(std::move(fault));
     }

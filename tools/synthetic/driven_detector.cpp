@@ -43,7 +43,7 @@ DrivenDetector::DrivenDetector(const MatcherConfig& config, const Capacity& capa
     drive();
     step();
   }
-  steps_ = distances_ = scanned_ = sketches_ = 0;
+  steps_ = distances_ = scanned_ = sketches_ = answered_ = found_ = 0;
 }
 
 void DrivenDetector::drive() {
@@ -58,6 +58,7 @@ void DrivenDetector::step() noexcept {
   scanned_ += report.work.scanned;
   sketches_ += report.work.sketches;
   for (const Answer& answer : report.answers) {
+    ++answered_;
     if (answer.gate != Gate::match) continue;
     constexpr double tolerance = 5.0;
     const double place = static_cast<double>(answer.match->place);
@@ -73,7 +74,7 @@ std::uint64_t DrivenDetector::bytes_a_step() const noexcept {
 }
 
 double DrivenDetector::found() const noexcept {
-  return static_cast<double>(found_) / static_cast<double>(std::max<std::uint64_t>(steps_, 1));
+  return static_cast<double>(found_) / static_cast<double>(std::max<std::uint64_t>(answered_, 1));
 }
 
 }  // namespace seqloop::program

@@ -45,6 +45,7 @@ class DrivenDetector {
   std::uint64_t distances_ = 0;
   std::uint64_t scanned_ = 0;
   std::uint64_t sketches_ = 0;
+  std::size_t answered_ = 0;
   std::size_t found_ = 0;
 };
 

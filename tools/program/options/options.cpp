@@ -82,8 +82,12 @@ std::pair<int, int> parse_size(std::string_view text) {
 }
 
 void OptionTable::flag(std::string name, bool& target, std::string help) {
-  add({std::move(name), ValueKind::flag, std::move(help),
-       [&target](std::string_view value) { target = value != "false"; }});
+  add({std::move(name), ValueKind::flag, std::move(help), [&target](std::string_view value) {
+         if (value != "true" && value != "false") {
+           throw std::invalid_argument(quoted(value) + " is neither true nor false");
+         }
+         target = value == "true";
+       }});
 }
 
 void OptionTable::count(std::string name, std::size_t& target, std::string help) {

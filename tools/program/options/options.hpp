@@ -15,7 +15,7 @@ namespace seqloop::program {
 
 /// How a value is written, on the command line and in a TOML file.
 enum class ValueKind {
-  flag,    ///< no value on the command line; true or false in TOML
+  flag,    ///< true or false; on the command line no value is true
   count,   ///< whole number, 0 or more
   number,  ///< decimal number
   text,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 namespace seqloop::program {
 
@@ -13,6 +14,9 @@ namespace seqloop::program {
 [[nodiscard]] inline bool is_database(const std::filesystem::path& path) {
   constexpr std::string_view begins = "SQLite format 3";
   std::array<char, begins.size()> head{};
+  // A file of the kernel's has no bytes, and may keep its reader waiting.
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) < head.size() || error) return false;
   std::ifstream file(path, std::ios::binary);
   return file.read(head.data(), head.size()) && std::ranges::equal(head, begins);
 }

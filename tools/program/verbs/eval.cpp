@@ -153,9 +153,10 @@ void eval(const EvalSettings& settings, const ExperimentRunner& run_experiment, 
                {{"matches", !settings.matches.empty()},
                 {"truth, tolerance, positions, radius, unlisted", truth_given},
                 {"frames", settings.frames > 0},
-                {"threshold-on", settings.threshold_on.has_value()},
-                {"json", settings.json}},
+                {"threshold-on", settings.threshold_on.has_value()}},
                "an experiment says it in its file", "leave it out here");
+  refuse_given(faults, {{"json", settings.json}}, "an experiment's numbers are in its folder",
+               "leave it out, and read results.csv there");
   if (settings.out.empty()) faults.push_back({"out", "not given", "--out FOLDER"});
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   try {
