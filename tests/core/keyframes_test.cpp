@@ -231,6 +231,24 @@ TEST(Keyframes, AreAllThatAreSeenWhereOthersAreLost) {
   EXPECT_TRUE(seen(slow, 1).second);
 }
 
+// Now and then one looks like the last change, and the one that is lost beside it may have, too.
+TEST(Keyframes, AreAllWhereTheRobotIsSlowNowAndThenAndHalfIsLost) {
+  ArenaMemory memory(1 << 16, {});
+  Arena arena(memory.span());
+  Keyframes keyframes(arena, 2);
+  constexpr std::array steps{0.4F, 0.4F, 0.4F, 0.1F, 0.1F};
+  float angle = 0.0F;
+  for (std::size_t frame = 0; frame < 400; ++frame) {
+    angle += steps[frame % steps.size()];
+    if (frame % 2 == 1) {
+      (void)keyframes.skip(1);
+    } else {
+      (void)keyframes.take(std::array{std::cos(angle), std::sin(angle)}, 0.5);
+    }
+    EXPECT_FALSE(keyframes.is_dense()) << frame;
+  }
+}
+
 // What was known of it before holds where most are lost.
 TEST(Keyframes, StayFewWhereADriveIsDenseAndMostIsLost) {
   const Vectors slow = test::slowly(test::way(1, 300, 0.0F, 1), 4, 1);

@@ -107,8 +107,9 @@ class Keyframes {
     const auto apart = [](std::uint64_t frames) {
       return static_cast<double>(std::min(frames, most_apart));
     };
-    usually_apart_.take(std::clamp(usually_apart_.mean(), apart(since_change_ + 1),
-                                   apart(since_change_ + hidden + 1)));
+    // Dense is what is seen to be; then it took as many as usual, if that may be.
+    usually_apart_.take(std::clamp(is_dense_ ? usually_apart_.mean() : 1.0,
+                                   apart(since_change_ + 1), apart(since_change_ + hidden + 1)));
     ++changes_;
     since_change_ = 0;
     decide();
