@@ -84,8 +84,7 @@ void OutputFile::open_beside() {
   if (folder.empty()) folder = ".";
   std::error_code error;
   if (!std::filesystem::exists(folder, error))
-    throw SetupError(
-        {path_.string(), "its folder does not exist", "create " + folder.string() + " first"});
+    throw SetupError(missing_folder(path_.string(), folder));
   if (!std::filesystem::is_directory(folder, error))
     throw SetupError(Fault{path_.string(), folder.string() + " is not a folder"});
 

@@ -50,9 +50,7 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   if (fs::exists(status) && !(fs::is_directory(status) && fs::is_empty(path_, error)))
     throw SetupError(Fault{shown, "is there already and is no empty folder",
                            "choose another name or remove it"});
-  if (!fs::is_directory(around, error))
-    throw SetupError(
-        Fault{shown, "its folder does not exist", "create " + around.string() + " first"});
+  if (!fs::is_directory(around, error)) throw SetupError(missing_folder(shown, around));
   if (fs::exists(status) && on_other_devices(path_, around))
     throw SetupError(Fault{shown, "is the top of a file system, which cannot be replaced",
                            "name a folder in it"});

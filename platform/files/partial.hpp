@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
+
+#include "seqloop/fault.hpp"
 
 namespace seqloop::files {
 
@@ -20,6 +23,11 @@ struct Partial {
 /// Makes one, after removing those of the same output that killed processes left.
 /// @return no descriptor where it cannot be made; `errno` says why
 [[nodiscard]] Partial make_partial(const std::filesystem::path& output, PartialKind kind);
+
+/// That the folder is missing in which something is to be made. @param shown what
+[[nodiscard]] inline Fault missing_folder(std::string shown, const std::filesystem::path& folder) {
+  return {std::move(shown), "its folder does not exist", "create " + folder.string() + " first"};
+}
 
 /// What an errno means, in words.
 [[nodiscard]] inline std::string reason(int error) {

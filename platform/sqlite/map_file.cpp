@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -106,27 +105,11 @@ bool has_bytes(const fs::path& path) {
   return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0 && !error;
 }
 
-constexpr std::array<std::string_view, 3> tails{"-wal", "-shm", "-journal"};
-
 /// A file that SQLite keeps beside another: it names them by the file, not by a link to it.
 fs::path beside(const fs::path& path, std::string_view tail) {
   std::error_code error;
   const fs::path file = fs::weakly_canonical(path, error);
   return (error ? path : file).string() + std::string(tail);
-}
-
-/// For one that is missing, or empty. Throws SetupError.
-void check_what_lies_beside(const fs::path& path) {
-  const fs::path log = beside(path, "-wal");
-  const fs::path journal = beside(path, "-journal");
-  const bool is_rewritten = may_be_needed(journal);
-  const bool is_log = has_bytes(log) && (::access(log.c_str(), R_OK) != 0 || holds_batches(log));
-  if (!is_rewritten && !is_log) return;
-  throw SetupError({(is_rewritten ? journal : log).string(),
-                    "belongs to a map that is there no more and was not closed: what was saved "
-                    "last may be in this alone",
-                    "put that map back, or this beside it under its new name; if neither is "
-                    "wanted, remove this"});
 }
 
 }  // namespace
@@ -211,12 +194,22 @@ void MapFile::State::take_form(const MapForm& wanted) {
 }
 
 void check_nothing_is_left_of_another(const fs::path& path) {
-  if (!has_bytes(path)) check_what_lies_beside(path);
+  if (has_bytes(path)) return;
+  const fs::path log = beside(path, "-wal");
+  const fs::path journal = beside(path, "-journal");
+  const bool is_rewritten = may_be_needed(journal);
+  const bool is_log = has_bytes(log) && (::access(log.c_str(), R_OK) != 0 || holds_batches(log));
+  if (!is_rewritten && !is_log) return;
+  throw SetupError({(is_rewritten ? journal : log).string(),
+                    "belongs to a map that is there no more and was not closed: what was saved "
+                    "last may be in this alone",
+                    "put that map back, or this beside it under its new name; if neither is "
+                    "wanted, remove this"});
 }
 
 void remove_what_is_left(const fs::path& path) noexcept {
   std::error_code error;
-  for (const std::string_view tail : tails) fs::remove(beside(path, tail), error);
+  for (const char* tail : {"-wal", "-shm", "-journal"}) fs::remove(beside(path, tail), error);
 }
 
 MapFile MapFile::open(const fs::path& path, const std::optional<MapForm>& form) {

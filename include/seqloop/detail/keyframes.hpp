@@ -38,7 +38,6 @@ class Keyframes {
     hidden_ = 0;
     usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
-    unseen_ = 0.0;
     std::ranges::fill(last_change_, 0.0F);
     last_is_change_ = true;
   }
@@ -55,7 +54,6 @@ class Keyframes {
   /// @return whether it is a keyframe
   /// Work: 2 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
-    unseen_ = 0.0;
     const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense_;
     const double from_change = squared_distance(last_change_, descriptor);
@@ -82,12 +80,12 @@ class Keyframes {
   /// last change, they did so, too; else the scene changed with one of them, or with that one.
   /// @return how many keyframes they are by what is usual, of several calls on end together
   [[nodiscard]] std::uint64_t skip(std::uint64_t frames) noexcept {
-    hidden_ += frames;
+    const std::uint64_t before = std::exchange(hidden_, hidden_ + frames);
     if (!is_dense_) return frames;
-    unseen_ += static_cast<double>(frames) / usually_apart_.mean();
-    const auto keyframes = static_cast<std::uint64_t>(unseen_);
-    unseen_ -= static_cast<double>(keyframes);
-    return keyframes;
+    const auto keyframes = [apart = usually_apart_.mean()](std::uint64_t hidden) {
+      return static_cast<std::uint64_t>(static_cast<double>(hidden) / apart);
+    };
+    return keyframes(hidden_) - keyframes(before);
   }
 
   /// Whether it usually takes more than a frame for the scene to change.
@@ -165,7 +163,6 @@ class Keyframes {
   std::uint64_t changes_ = 0;
   std::uint64_t since_change_ = 0;  // frames up to the last one that still looked like it
   std::uint64_t hidden_ = 0;        // since then
-  double unseen_ = 0.0;             // part of a keyframe that unseen frames were
   Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "files/partial.hpp"
 #include "program/options/verb.hpp"
 #include "program/process/database_file.hpp"
 #include "program/process/utf8.hpp"
@@ -72,8 +73,7 @@ void check(const MapSettings& settings, bool reference, Faults& faults) {
          "no SeqLoop map: it is not even an SQLite database, or its first page is damaged",
          "name a map; if it was one, `seqloop map recover` finds what is left of it"});
   } else if (!settings.read_only && !std::filesystem::is_directory(around, error)) {
-    faults.push_back({settings.file.string(), "its folder does not exist",
-                      "create " + around.string() + " first"});
+    faults.push_back(files::missing_folder(settings.file.string(), around));
   }
   if (reference) {
     faults.push_back({"map, reference", "there are two maps", "leave out one of them"});

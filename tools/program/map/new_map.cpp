@@ -51,7 +51,7 @@ NewMap::NewMap(fs::path path) : path_(std::move(path)) {
   }
   const fs::path folder = fs::absolute(path_, error).parent_path();
   if (!fs::exists(folder, error) && !error) {
-    throw SetupError({name, "its folder does not exist", "create " + folder.string() + " first"});
+    throw SetupError(files::missing_folder(name, folder));
   }
   sqlite::check_nothing_is_left_of_another(path_);
   const files::Partial made = files::make_partial(path_, files::PartialKind::file);
@@ -68,9 +68,8 @@ NewMap::~NewMap() {
   map_.reset();
   if (partial_.empty()) return;
   std::error_code error;
-  for (const char* tail : {"", "-wal", "-shm", "-journal"}) {
-    fs::remove(partial_.string() + tail, error);
-  }
+  fs::remove(partial_, error);
+  sqlite::remove_what_is_left(partial_);
 }
 
 sqlite::MapFile& NewMap::open(const sqlite::MapForm& form) {
