@@ -151,10 +151,10 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 
 /// A step whose answers stand beside those of the steps before it.
 FrameReport Detector::take(std::span<const float> descriptor) noexcept {
-  const std::uint64_t newest = queries_.frames();
   skipped_ = 0;
   const auto [readable, is_step] = take_query(descriptor);
-  if (!is_step) return report_again();
+  if (!is_step) return readable ? report_again() : report_unseen();
+  const std::uint64_t newest = queries_.newest();
   const bool became_place = config_.use == Use::localise || become_place();
   FrameReport report = answer(newest, readable);
   report.map_full = !became_place;
@@ -182,6 +182,22 @@ FrameReport Detector::report_again() noexcept {
   if (told_before) tell(*told_before, report.newest, keyframes_.is_settled());
   report.answers = told_.subspan(first, told_count_ - first);
   say_last(report, queries_.newest(), true);
+  return report;
+}
+
+/// Of a frame that nothing is seen of, where the robot stood.
+FrameReport Detector::report_unseen() noexcept {
+  const std::size_t before = pending_.answers().size();
+  pending_.answer(*map_, steps_, steps_.frames() - 1, window_began_);
+  FrameReport report = last_;
+  report.work = {};
+  report.full_search = false;
+  report.now.reset();
+  const std::size_t first = told_count_;
+  tell(report, pending_.answers().subspan(before));
+  told_[told_count_++] = {report.newest, Gate::frame_error, 0.0F, std::nullopt};
+  report.answers = told_.subspan(first, told_count_ - first);
+  say_last(report, queries_.newest(), false);
   return report;
 }
 
@@ -431,16 +447,39 @@ void Detector::skip(std::uint64_t frames) noexcept {
     restart();
     return;
   }
-  pending_.forget_evidence();
+  if (holds_back(frames)) return;
   const std::uint64_t steps = steps_of(frames);
-  steps_.skip(frames, steps);
+  steps_.skip(frames);
+  if (steps > 0) newest_was_seen_ = false;
+  pass(steps, frames);
+}
+
+/// Frames that nothing is seen of, where the robot stood with the newest one that could be read,
+/// are part of that stop if the next one that can be read is: that will tell. So many at most are
+/// held back as are a window before it and one behind it.
+/// @return whether they are
+bool Detector::holds_back(std::uint64_t frames) noexcept {
+  const bool stands = !told_.empty() && newest_was_seen_ && !keyframes_.is_dense() &&
+                      steps_.repeats(queries_.newest());
+  if (!stands || held_back_ + frames > 2 * config_.sequence_length) {
+    held_back_ = 0;
+    return false;
+  }
+  held_back_ += steps_of(frames);
+  steps_.skip(frames);
+  return true;
+}
+
+/// The robot went on by so many steps with the newest frames that nothing was seen of.
+void Detector::pass(std::uint64_t steps, std::uint64_t frames) noexcept {
+  pending_.forget_evidence();
   if (steps == 0) return;
+  steps_.pass(steps, frames);
   for (std::uint64_t step = 0; step < steps; ++step) {
     queries_.push_again();
     slices_.repeat();
     if (config_.use == Use::close_loops) static_cast<void>(become_place());
   }
-  newest_was_seen_ = false;
   ranges_.skip(map_->order(), steps);
   proposals_.skip(map_->order(), steps);
   decision_.skip(steps);
@@ -449,6 +488,7 @@ void Detector::skip(std::uint64_t frames) noexcept {
 }
 
 void Detector::restart() noexcept {
+  held_back_ = 0;
   answered_.begin();
   believed_.begin();
   window_began_ = queries_.frames();
@@ -465,6 +505,7 @@ void Detector::restart() noexcept {
 /// the frame before when there is nothing to take.
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
+    if (holds_back(1)) return {false, false};
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     ++unread_;
@@ -479,11 +520,13 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
   }
   statistics_.follow(descriptor, config_.standardisation);
   const bool is_keyframe = told_.empty() || keyframes_.take(descriptor, statistics_.variance_sum());
+  const std::uint64_t held_back = std::exchange(held_back_, 0);
   if (!is_keyframe && newest_was_seen_) {
     steps_.repeat();
-    if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand();
+    if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand(held_back + 1);
     return {true, false};
   }
+  if (held_back > 0) pass(held_back, held_back);
   using enum FrameSteps::Shows;
   steps_.take(keyframes_.is_settled(), !is_keyframe          ? the_same
                                        : keyframes_.is_cut() ? another_scene
@@ -494,13 +537,13 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
   return {true, true};
 }
 
-/// The robot stands at the newest place, if that is the newest step.
-void Detector::stand() noexcept {
+/// The robot stood for so many frames at the newest place, if that is the newest step.
+void Detector::stand(std::uint64_t frames) noexcept {
   const PlaceOrder& order = map_->order();
   const CandidateRun drive = running(config_, order);
   if (drive.first < drive.last &&
       order.frame(drive.last - 1) == steps_.frame_of(queries_.newest())) {
-    map_->stand();
+    map_->stand(frames);
   }
 }
 

@@ -97,7 +97,7 @@ bool PlaceMap::add(std::span<const float> descriptor) noexcept {
     added_.follow(descriptor, standardisation_);
     if (has_keyframes_ && !keyframes_.take(descriptor, added_.variance_sum()) && first != size()) {
       ++no_places_;
-      if (!keyframes_.is_dense()) stand();
+      if (!keyframes_.is_dense()) stand(1);
       return true;
     }
     order_.count_from(order_.next_number() + no_places_);

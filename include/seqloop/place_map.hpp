@@ -158,11 +158,12 @@ class PlaceMap {
     if (!first_visits_.empty()) first_visits_[order_.slot(row)] = number;
   }
 
-  /// The robot stands at the newest place: so does another frame, which becomes none.
-  void stand() noexcept {
+  /// The robot stands at the newest place: so many frames more are of it, and become none.
+  void stand(std::uint64_t frames) noexcept {
     if (stood_.empty() || size() == 0) return;
-    std::uint32_t& frames = stood_[order_.slot(size() - 1)];
-    if (frames < std::numeric_limits<std::uint32_t>::max()) ++frames;
+    std::uint32_t& stood = stood_[order_.slot(size() - 1)];
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    stood = static_cast<std::uint32_t>(std::min(most, stood + std::min(most, frames)));
   }
 
   /// Frames after a place's own at which the robot stood there. None are known of places that were

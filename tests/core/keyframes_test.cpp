@@ -289,11 +289,12 @@ TEST(FrameSteps, LeaveOutFramesThatNeverCame) {
   FrameSteps steps = memory.steps(8, 16);
   steps.take(true, something_new);   // frame 0
   steps.repeat();                    // 1
-  steps.skip(2, 0);                  // 2, 3
+  steps.skip(2);                     // 2, 3
   steps.repeat();                    // 4
   steps.take(false, another_scene);  // 5
-  steps.skip(4, 2);                  // 6 to 9
-  steps.take(true, something_new);   // 10
+  steps.skip(4);                     // 6 to 9
+  steps.pass(2, 4);
+  steps.take(true, something_new);  // 10
   const auto frames_of = [&](std::uint64_t step) {
     std::vector<std::uint64_t> frames;
     steps.frames_of(step, [&](std::uint64_t frame, bool settled) {
@@ -373,7 +374,8 @@ TEST(FrameSteps, AreIsolatedBetweenTwoCuts) {
        {something_new, another_scene, another_scene, something_new, another_scene}) {
     steps.take(true, shows);
   }
-  steps.skip(1, 1);            // a frame that never came,
+  steps.skip(1);  // a frame that never came,
+  steps.pass(1, 1);
   steps.take(true, the_same);  // and what it may have shown
   for (std::uint64_t step = 0; step < 7; ++step) {
     EXPECT_EQ(steps.is_isolated(step), step == 1) << step;
@@ -658,6 +660,59 @@ TEST(Keyframes, TellWhichFrameOfItsOwnStopItWas) {
   }
   EXPECT_EQ(map.stood(at), stop);
   EXPECT_EQ(told, stop);
+}
+
+// A robot that stood has gone on meanwhile, or has not: what is seen next tells. Frames that cannot
+// be read are answered at once all the same.
+TEST(Keyframes, OfARobotThatStoodAreKnownOnceSomethingIsSeenAgain) {
+  constexpr std::size_t at = 150;
+  constexpr std::size_t stop = 60;
+  const Vectors known = with_stop(test::way(1, 300, 0.3F, 1), at, stop);
+  const Vectors seen = with_stop(test::way(1, 300, 0.3F, 2), at, stop);
+  const auto every_third = [](std::size_t frame) {
+    return frame > at + 1 && frame < at + stop && frame % 3 == 0;
+  };
+  const auto as_it_leaves = [](std::size_t frame) {
+    return frame > at + stop && frame <= at + stop + 12;
+  };
+  for (const bool never_came : {false, true}) {
+    for (const bool leaves : {false, true}) {
+      MatcherConfig config;
+      PlaceMap map = map_of(known, config);
+      Detector detector(config, map);
+      std::size_t told = 0;
+      std::size_t unread = 0;
+      const auto take = [&](std::span<const Answer> answers) {
+        for (const Answer& answer : answers) {
+          unread += answer.gate == Gate::frame_error ? 1 : 0;
+          if (answer.gate != Gate::match) continue;
+          ++told;
+          EXPECT_NEAR(static_cast<double>(answer.match->frame()), static_cast<double>(answer.frame),
+                      3.0);
+        }
+      };
+      std::size_t lost = 0;
+      for (std::size_t frame = 0; frame < seen.size(); ++frame) {
+        const bool is_lost = leaves ? as_it_leaves(frame) : every_third(frame);
+        lost += is_lost ? 1 : 0;
+        if (is_lost && never_came) {
+          detector.skip(1);
+          continue;
+        }
+        const FrameReport report =
+            detector.step(is_lost ? std::span<const float>() : std::span(seen[frame]));
+        EXPECT_EQ(report.newest, frame);
+        EXPECT_EQ(report.now.has_value(), !is_lost) << frame;
+        take(report.answers);
+        if (!is_lost) continue;
+        EXPECT_EQ(report.gate, Gate::frame_error);
+        EXPECT_EQ(report.frame, frame);
+      }
+      take(detector.finish());
+      EXPECT_EQ(unread, never_came ? 0 : lost);
+      EXPECT_GE(told, seen.size() - lost - 3) << never_came << leaves;
+    }
+  }
 }
 
 // Who comes to a stop is at its beginning, even if nothing is known of him before, and frames may

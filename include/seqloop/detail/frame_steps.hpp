@@ -46,17 +46,22 @@ class FrameSteps {
   /// The next frame is the newest step.
   void repeat() noexcept { note((steps_ - 1) | (settled_ ? 0 : unsettled)); }
 
-  /// So many frames never came, and as many steps, or fewer, went by with them.
-  void skip(std::uint64_t frames, std::uint64_t steps) noexcept {
-    const std::uint64_t first = frames_;
+  /// So many frames never came, or showed nothing. They are part of no step.
+  void skip(std::uint64_t frames) noexcept {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(frames, step_of_.size()); ++i) {
-      step_of_[slot(step_of_, first + i)] = none;
+      step_of_[slot(step_of_, frames_ + i)] = none;
     }
+    frames_ += frames;
+  }
+
+  /// So many steps went by with the newest frames. @param frames of which nothing is known, as many
+  /// as steps or more
+  void pass(std::uint64_t steps, std::uint64_t frames) noexcept {
+    const std::uint64_t first = frames_ - frames;
     for (std::uint64_t i = 0; i < steps; ++i, ++steps_) {
       if (!frame_of_.empty())
         frame_of_[slot(frame_of_, steps_)] = (first + frames * i / steps) | same;
     }
-    frames_ += frames;
   }
 
   /// Frames so far.
