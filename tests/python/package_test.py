@@ -7,15 +7,18 @@ import ast
 import copy
 import csv
 import dataclasses
+import inspect
 import json
 import os
 import pathlib
+import pickle
 import re
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import typing
 import unittest
 
 import numpy
@@ -88,6 +91,42 @@ class Imports(unittest.TestCase):
         for word in ("PlaceMap", "Describer", "describe_drive", "float32 [D]", "unit length", "match(reference",
                      "SetupError", "settings()"):
             self.assertIn(word, shown)
+
+    def test_all_that_is_public_is_explained(self) -> None:
+        unexplained = []
+        for name in seqloop.__all__:
+            owner = getattr(seqloop, name)
+            named = [(name, owner)] if inspect.isfunction(owner) or inspect.isclass(owner) else []
+            if inspect.isclass(owner):  # words beside fields of data classes are for who reads the source
+                fields = [field.name for field in dataclasses.fields(owner)] if dataclasses.is_dataclass(owner) else []
+                named += [(f"{name}.{member}", vars(owner)[member]) for member in vars(owner)
+                          if not member.startswith("_") and member not in fields
+                          or member in ("__enter__", "__exit__", "__len__")]
+            for what, value in named:
+                words = str(value.__doc__ or "").strip().splitlines()
+                called = not inspect.isclass(value) and not isinstance(value, property) and "->" in words[0]
+                if not words[1 if called else 0:]:  # pybind11 begins with what is taken
+                    unexplained.append(what)
+        self.assertEqual(unexplained, [])
+        for gate in typing.get_args(seqloop.Gate):
+            self.assertRegex(seqloop.Answer.__doc__, rf"(?m)^{gate}: ")
+
+    def test_the_describer_is_seen_before_it_is_there(self) -> None:
+        code = ("import seqloop\n"
+                "assert 'Describer' in dir(seqloop) and set(seqloop.__all__) <= set(dir(seqloop))\n"
+                "assert 'libopencv' not in open('/proc/self/maps').read()\n"
+                "help(seqloop)\n")
+        done = subprocess.run([sys.executable, "-B", "-c", code], check=True, capture_output=True, text=True)
+        self.assertIn("class Describer(", done.stdout)
+
+    def test_arguments_can_be_asked_for(self) -> None:
+        for call, parameters in ((seqloop.PlaceMap, ["max_places", "descriptor_size", "close_loops", "kwargs"]),
+                                 (seqloop.PlaceMap.open,
+                                  ["map", "descriptor_size", "max_places", "describer", "kwargs"]),
+                                 (seqloop.Detector, ["map"]),
+                                 (seqloop.Detector.step, ["self", "descriptor", "time_s"]),
+                                 (seqloop.Describer.describe, ["self", "picture"])):
+            self.assertEqual(list(inspect.signature(call).parameters), parameters)
 
     def test_help_shows_the_arguments_that_the_types_have(self) -> None:
         from seqloop import _vision
@@ -396,6 +435,31 @@ class Lives(unittest.TestCase):
         self.assertEqual(sorted(frames), list(range(200)))
         self.assertEqual(reports[50].newest, 50)
         self.assertIn("Match(place=", repr([report.answers for report in reports]))
+
+    def test_reports_are_plain_values(self) -> None:
+        reference, query = drives()
+        for settings in ({"ds": 10}, {"ds": 10, "paper": True}):
+            places = seqloop.PlaceMap(200, 48, **settings)
+            places.add_drive(reference)
+            detector = seqloop.Detector(places)
+            reports = [detector.step(row) for row in [*query[:60], numpy.zeros(48, numpy.float32), None]]
+            values = [*reports, *(answer for report in reports for answer in report.answers),
+                      *(report.now for report in reports if report.now), reports[40].match, reports[40].work]
+            for value in values:
+                for other in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+                    self.assertIsNot(other, value)
+                    self.assertEqual((other, hash(other), repr(other)), (value, hash(value), repr(value)))
+            self.assertEqual(len(set(reports)), len(reports))
+            self.assertNotEqual(reports[0], None)
+            self.assertRegex(repr(reports[40]), r"^Report\(answers=\[.*gate='match'.*work=Work\(candidates=\d")
+        self.assertTrue(any(numpy.isnan(answer.probability) for report in reports for answer in report.answers))
+        for kind in (seqloop.Report, seqloop.Answer, seqloop.Match, seqloop.Belief, seqloop.Work):
+            self.assertIn("=", repr(kind.__new__(kind)), "empty, but no crash")
+            with self.assertRaisesRegex(TypeError, "No constructor"):
+                kind()
+        for kind, use in ((seqloop.PlaceMap, len), (seqloop.Detector, lambda one: one.finish()), (seqloop.Describer, lambda one: one.size)):
+            with self.assertRaises(RuntimeError):
+                use(kind.__new__(kind))
 
     def test_a_drive_that_is_refused_leaves_the_map_empty(self) -> None:
         # Of the built-in descriptor's size, whose statistics are known, and without any: each place is kept as it comes.

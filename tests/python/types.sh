@@ -41,8 +41,25 @@ report.gate == "matched"
 report.answers[0].match.place
 seqloop.map_info("map.seqloop").sessions[0].places = 3
 END
+# The page's examples and those of help(seqloop), each as one program, with what they take as given.
+given='import numpy
+from numpy.typing import NDArray
+truth: NDArray[numpy.int64]'
+{
+  printf '%s\ncamera: list[tuple[NDArray[numpy.uint8], float]]\n' "$given"
+  sed -n '/^```python/,/^```/{/^```/!p}' "$source/tools/python/README.md"
+} >"$work/page.py"
+{
+  printf '%s\ncamera: list[NDArray[numpy.uint8]]\n' "$given"
+  "$python" -c 'import ast, sys
+print(ast.get_docstring(ast.parse(open(sys.argv[1]).read())))' "$source/tools/python/seqloop/__init__.py" |
+    sed -n 's/^    //p; s/^$//p'
+} >"$work/help.py"
+for example in page help; do
+  grep -q '^ *tell(detector.finish())' "$work/$example.py" || { echo "$example: what finish() gives is lost"; exit 1; }
+done
 MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --cache-dir "$work/cache" \
-  "$source/tools/python/seqloop" "$work/good.py"
+  "$source/tools/python/seqloop" "$work/good.py" "$work/page.py" "$work/help.py"
 if MYPYPATH=$source/tools/python mypy --strict --python-executable "$python" --cache-dir "$work/cache" \
   "$work/bad.py" >"$work/found"; then
   echo "mypy found nothing wrong"

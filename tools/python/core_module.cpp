@@ -82,8 +82,9 @@ class Stepper {
         trouble = file->trouble();
       }
       numbers_->rename(processed);
-      report.report = processed.report;
-      report.answers.assign(report.report.answers.begin(), report.report.answers.end());
+      static_cast<FrameReport&>(report) = processed.report;
+      report.kept.assign(report.answers.begin(), report.answers.end());
+      report.answers = {};
     }
     if (trouble) warn(*trouble);
     return report;
@@ -264,20 +265,24 @@ PYBIND11_MODULE(_core, module) {
           py::arg("place"),
           "(session, frame) where a place of a map in a file was seen; the frame is None once\n"
           "the place is forgotten. Errors: SetupError.")
-      .def_property_readonly("saved", &Map::saved,
+      .def_property_readonly("saved", outliving(&Map::saved),
                              "Frames of this drive, from the first on, that are on the disk for\n"
                              "good; those of gaps of more than ds are not among them. Errors:\n"
                              "SetupError where the map is in no file.")
-      .def("close", &Map::close,
+      .def("close", outliving(&Map::close),
            "Closes the file. What was stepped through since the last save, and not finished, is\n"
            "lost. A map in memory alone stays as it is.")
-      .def("__enter__", [](const py::object& map) { return map; })
-      .def("__exit__", [](Map& map, const py::args& /*why*/) { map.close(); })
+      .def(
+          "__enter__", [](const py::object& map) { return map; }, "The map itself.")
+      .def(
+          "__exit__",
+          [](const std::shared_ptr<Map>& map, const py::args& /*why*/) { map->close(); },
+          "As close().")
       .def("add_drive", outliving(&Map::add_drive), py::arg("descriptors"),
            "Takes in the drive to localise in, whole: descriptors [N, D], floating point.\n\n"
            "Rows are brought to unit length; a blank row, all zeros, shows what the one before\n"
            "it showed. A map holds one drive. Errors: SetupError.")
-      .def("__len__", &Map::size)
+      .def("__len__", outliving(&Map::size), "How many places it holds.")
       .def_property_readonly(
           "capacity", [](Map& map) { return map.places().capacity(); }, "Most places.")
       .def_property_readonly(

@@ -9,10 +9,9 @@
 
 namespace seqloop::python {
 
-/// A FrameReport whose answers stay.
-struct Report {
-  FrameReport report;
-  std::vector<Answer> answers;
+/// A FrameReport whose answers stay: they are in `kept`.
+struct Report : FrameReport {
+  std::vector<Answer> kept;
 };
 
 /// Report, Answer, Match, Belief, Work.

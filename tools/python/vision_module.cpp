@@ -64,9 +64,9 @@ class PictureDescriber {
     program::refuse(std::move(faults));
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return describer_->size(); }
+  [[nodiscard]] std::size_t size() { return describer_->size(); }
 
-  [[nodiscard]] std::string fingerprint() const { return program::fingerprint(settings_); }
+  [[nodiscard]] std::string fingerprint() { return program::fingerprint(settings_); }
 
   py::array_t<float> describe(const Given& picture) {
     const Image looked_at = image(picture);
@@ -131,8 +131,9 @@ PYBIND11_MODULE(_vision, module) {
           "settings",
           [] { return seqloop::python::described(seqloop::program::add_drive_options); },
           "Every setting of a describer, and what it does.")
-      .def_property_readonly("size", &PictureDescriber::size, "D, values in a descriptor.")
-      .def_property_readonly("fingerprint", &PictureDescriber::fingerprint,
+      .def_property_readonly("size", outliving(&PictureDescriber::size),
+                             "D, values in a descriptor.")
+      .def_property_readonly("fingerprint", outliving(&PictureDescriber::fingerprint),
                              "What a map in a file remembers of how it was described: all that\n"
                              "makes descriptors differ. For PlaceMap.open.")
       .def("describe", outliving(&PictureDescriber::describe), py::arg("picture"),

@@ -14,16 +14,21 @@ Frame by frame, as a robot does:
 
     places = seqloop.PlaceMap(max_places=20_000, descriptor_size=describer.size, close_loops=True)
     detector = seqloop.Detector(places)
-    for picture in camera:                                 # uint8 [H, W, 3], blue first
-        for answer in detector.step(describer.describe(picture)).answers:
-            if answer.gate == "match":
+
+    def tell(answers: list[seqloop.Answer]) -> None:
+        for answer in answers:
+            if answer.gate == "match" and answer.match is not None:
                 print(f"frame {answer.frame} shows what {answer.match.frame} did")
+
+    for picture in camera:                                 # uint8 [H, W, 3], blue first
+        tell(detector.step(describer.describe(picture)).answers)
+    tell(detector.finish())                                # of the frames that still wait
 
 A map that lasts, in the same files as `seqloop run --map`, of many sessions:
 
     with seqloop.PlaceMap.open("garage.seqloop", describer.size, describer=describer.fingerprint) as places:
         detector = seqloop.Detector(places)                # step as above; places.where(a place)
-        detector.finish()                                  # all of it is saved
+        tell(detector.finish())                            # the last answers, and all is saved
 
 `map_info`, `check_map` and `merge_maps` are for such files as a whole.
 
@@ -32,6 +37,9 @@ them. What goes wrong is a SetupError, a ValueError that tells every fault at on
 given in place of a NumPy array, such as a list or a file's name. Other arguments of a wrong Python
 type, such as a string for a number of places, are TypeErrors, as are too few, too many, and those of
 a name that is none.
+
+`Describer` needs OpenCV, which is loaded when it is asked for, as `help(seqloop)` does; importing
+the package loads none.
 
 Frames and places are counted from 0, frames that never came too. Differences and scores are 0 to 2
 between unit vectors, lower is better; probabilities 0 to 1.
@@ -99,31 +107,42 @@ class Matches:
     """Whether it is a match, or only the best there is. Act on this."""
 
     def __len__(self) -> int:
+        """How many frames have a row."""
         return len(self.query)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Measures:
-    """How good answers are: the keys of `seqloop eval --json`. Shares are 0 to 1, NaN where not defined.
+    """How good answers are. Shares are 0 to 1, NaN where not defined.
 
-    Measures equal only themselves, because NaN and a curve's array equal nothing: compare what they hold.
+    They have the names of `seqloop eval --json`, which has `reliability`, the answers by their probability, in place
+    of `curve`. Measures equal only themselves, because NaN and a curve's array equal nothing: compare what they hold.
     """
 
     frames: int
     """Queries that have a truth."""
     answered: int
+    """Answers that the truth can judge, accepted or not."""
     correct: int
+    """Answers that are right by the tolerance or the radius."""
     unknown: int
-    """Answers that the truth cannot judge."""
+    """Answers that the truth cannot judge; nothing else counts them."""
     precision: float
+    """Of all answers; 0 without any."""
     recall: float
+    """Of all answers; 0 without frames."""
     recall_at_100_precision: float
+    """The highest recall at which nothing is wrong."""
     area_under_curve: float
+    """Area under precision over recall."""
     accepted: int | None
     """Answers that were accepted; None where one does not say."""
     accepted_precision: float
+    """NaN: none is accepted."""
     accepted_recall: float
+    """NaN: no query has a truth."""
     expected_calibration_error: float
+    """How far probabilities are from the shares that are right. NaN: no answer has a probability."""
     curve: numpy.typing.NDArray[numpy.float64]
     """[P, 2]: recall, precision."""
 
@@ -133,6 +152,7 @@ class Session:
     """A drive in a map's file."""
 
     name: str
+    """Of no other session of the map."""
     places: int
     """Without those that were forgotten."""
     frames: int
@@ -140,6 +160,7 @@ class Session:
     began_ns: int
     """Nanoseconds since 1970."""
     settings: str
+    """What the drive was matched with, as text."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -157,7 +178,7 @@ class MapInfo:
 
     @property
     def places(self) -> int:
-        """Of all sessions."""
+        """Places of all sessions."""
         return sum(session.places for session in self.sessions)
 
 
@@ -188,10 +209,10 @@ def evaluate(matches: Matches, truth: MapPath | Integers | None = None, *, thres
         frames. Of a matrix `seen` [references, queries] that is True where both show one place, it is
         numpy.argwhere(seen.T).
     threshold_on: what the curve sweeps: "uniqueness", "score" or "probability".
-    frames: queries that have a truth; None: as many as the truth says, or for identity as far as the
+    frames: queries that have a truth; None or 0: as many as the truth says, or for identity as far as the
         answers reach.
     settings: tolerance=2 frames; reference_positions=, query_positions= (CSV files), radius=25 metres;
-        unlisted="wrong".
+        unlisted="wrong": so are answers to frames that the truth does not list, or "unknown": not counted.
     Errors: SetupError.
     """
     pairs: Integers | None = None
@@ -270,6 +291,10 @@ def settings() -> dict[str, str]:
     `seqloop.Describer.settings()`.
     """
     return _core.settings()
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 def __getattr__(name: str) -> typing.Any:

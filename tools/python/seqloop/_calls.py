@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import typing
 
 Owner = typing.TypeVar("Owner", bound=type)
@@ -14,6 +15,7 @@ def _as_python_would(take: typing.Any, function: typing.Any) -> typing.Any:
         take(*given, **named)
         return function(*given, **named)
     call.__qualname__ = take.__qualname__
+    call.__signature__ = inspect.signature(take)  # type: ignore[attr-defined]
     return call
 
 
@@ -21,7 +23,7 @@ def told_in_a_sentence(owner: Owner) -> Owner:
     """Has Python itself tell what is missing, too much, or of a name that is none, of all that the class can be asked.
 
     pybind11 writes down all that could be given and all that was, arrays too, and asks nobody for other words. What is
-    taken stands in the first line of a docstring.
+    taken stands in the first line of a docstring; `inspect.signature` has it from there.
     """
     for name, method in list(vars(owner).items()):
         function = getattr(owner, name)

@@ -10,4 +10,5 @@ Setting = Union[bool, float, str, "os.PathLike[str]", Sequence[float], None]
 
 Gate = Literal["no_frame", "frame_error", "warming_up", "waiting", "no_candidate", "not_unique",
                "new_place", "unsure", "match"]
-"""How far a frame came, in the order of the pipeline; only `match` means that the robot was here before."""
+"""How far a frame came, in the order of the pipeline; only `match` means that the robot was here before. `Answer` says
+what each means."""
