@@ -14,6 +14,8 @@ import struct
 import subprocess
 import sys
 import tempfile
+import traceback
+import typing
 import unittest
 import zlib
 
@@ -226,6 +228,79 @@ class Maps(unittest.TestCase):
         for call in (seqloop.map_info, seqloop.check_map):
             with self.assertRaisesRegex(seqloop.SetupError, "drive.npy"):
                 call(self.work / "drive.npy")
+
+    def in_a_fork(self, look: typing.Callable[[], None]) -> None:
+        """A look that raises, or does not come back, fails. Only so much as a fork may use is used there."""
+        child = os.fork()
+        if child == 0:
+            signal.alarm(60)
+            try:
+                look()
+            except BaseException:
+                traceback.print_exc()
+                os._exit(1)
+            os._exit(0)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+    def test_a_fork_leaves_the_file_to_who_opened_it(self) -> None:
+        file = self.work / "map.seqloop"
+        held = [self.open(file, session="monday")]
+        held.append(seqloop.Detector(held[0]))
+        for row in self.drive[:100]:
+            held[1].step(row)
+
+        def look() -> None:
+            places, detector = held
+            for call in (lambda: detector.step(self.drive[100]), lambda: detector.step(None), lambda: detector.skip(3),
+                         detector.finish, detector.newest_column, lambda: len(places), lambda: places.where(0),
+                         lambda: places.saved, lambda: seqloop.Detector(places)):
+                with self.assertRaisesRegex(seqloop.SetupError, f"map: process {os.getppid()} opened it"):
+                    call()
+            with places:
+                self.assertIn("PlaceMap(", repr(detector))
+            del places, detector
+            held.clear()
+
+        self.in_a_fork(look)
+        places, detector = held
+        for row in self.drive[100:]:
+            detector.step(row)
+        detector.finish()
+        self.assertEqual(places.saved, 200)
+        places.close()
+        self.assertEqual(seqloop.check_map(file), [])
+        self.assertEqual(seqloop.map_info(file).sessions[0].frames, 200)
+        # What is only read is in memory.
+        with self.open(file, read_only=True) as places:
+            detector = seqloop.Detector(places)
+            said = stepped(places, self.again)
+            self.in_a_fork(lambda: (self.assertEqual(stepped(places, self.again), said), detector.step(self.again[0]),
+                                    self.assertEqual(places.where(7), ("monday", 7)), places.close()))
+        with self.open(file) as places:
+            self.assertEqual(len(places), 200)
+
+    def test_who_has_it_open_is_told(self) -> None:
+        file = self.work / "map.seqloop"
+        self.match(file, "drive", "--session", "monday")
+        (self.work / "link.seqloop").symlink_to(file)
+        for settings in ({"read_only": True}, {}):
+            with self.open(file, **settings):
+                self.open(file, read_only=True).close()
+                for name in (file, self.work / "link.seqloop"):
+                    with self.assertRaisesRegex(seqloop.SetupError, r"open already; close\(\) that PlaceMap"):
+                        self.open(name)
+        self.open(file).close()
+
+    def test_a_describer_that_was_forgotten_is_told(self) -> None:
+        file = self.work / "map.seqloop"
+        with self.open(file, describer="gradients") as places:
+            stepped(places, self.drive)
+        for read_only in (False, True):
+            with self.assertRaisesRegex(seqloop.SetupError, "gradients.*; describer=describer.fingerprint"):
+                self.open(file, read_only=read_only)
+            with self.assertRaises(seqloop.SetupError) as raised:
+                self.open(file, read_only=read_only, describer="others")
+            self.assertNotIn("describer=", str(raised.exception))
 
     def test_names_that_are_no_utf8_are_read(self) -> None:
         file = self.work / "map.seqloop"

@@ -453,11 +453,12 @@ class Lives(unittest.TestCase):
             self.assertNotEqual(reports[0], None)
             self.assertRegex(repr(reports[40]), r"^Report\(answers=\[.*gate='match'.*work=Work\(candidates=\d")
         self.assertTrue(any(numpy.isnan(answer.probability) for report in reports for answer in report.answers))
+        self.assertEqual(repr(detector), "Detector(PlaceMap(max_places=200, descriptor_size=48, close_loops=False))")
         for kind in (seqloop.Report, seqloop.Answer, seqloop.Match, seqloop.Belief, seqloop.Work):
             self.assertIn("=", repr(kind.__new__(kind)), "empty, but no crash")
             with self.assertRaisesRegex(TypeError, "No constructor"):
                 kind()
-        for kind, use in ((seqloop.PlaceMap, len), (seqloop.Detector, lambda one: one.finish()), (seqloop.Describer, lambda one: one.size)):
+        for kind, use in ((seqloop.PlaceMap, len), (seqloop.Detector, repr), (seqloop.Describer, lambda one: one.size)):
             with self.assertRaises(RuntimeError):
                 use(kind.__new__(kind))
 
@@ -509,6 +510,17 @@ class Lives(unittest.TestCase):
             empty.add_drive(reference[:, :9])
         with self.assertRaisesRegex(seqloop.SetupError, "max_places"):
             seqloop.PlaceMap(20, 48).add_drive(reference)
+        short = seqloop.PlaceMap(200, 48)
+        short.add_drive(reference[:5])
+        with self.assertRaises(seqloop.SetupError) as raised:
+            seqloop.Detector(short)
+        self.assertEqual(str(raised.exception), "ds: the shortest line spans 17 places, the map has 5; shorten ds")
+        stood = seqloop.PlaceMap(200, 48)
+        stood.add_drive(numpy.repeat(reference[:1], 17, axis=0))
+        self.assertEqual(len(stood), 1)
+        seqloop.Detector(stood).step(reference[0])
+        with self.assertRaisesRegex(seqloop.SetupError, re.escape(str(raised.exception))):
+            seqloop.match(reference[:5], reference)
         empty.add_drive(reference)
         with self.assertRaisesRegex(seqloop.SetupError, "holds a drive"):
             empty.add_drive(reference)

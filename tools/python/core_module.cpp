@@ -14,7 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "program/drives/drive_length.hpp"
 #include "program/drives/source_numbers.hpp"
+#include "program/options/verb.hpp"
 #include "python/bindings.hpp"
 #include "python/interpreter_lock.hpp"
 #include "python/map.hpp"
@@ -40,9 +42,10 @@ class Stepper {
  public:
   explicit Stepper(std::shared_ptr<Map> map) : map_(std::move(map)) {
     const Unlocked unlocked;
-    const std::scoped_lock lock(map_->mutex());
+    const auto lock = map_->lock();
     map_->claim();
     detector_.emplace(map_->config(), map_->places());
+    if (map_->config().use == Use::localise && map_->file() == nullptr) check_length();
     // Of a map in a file, places have numbers of their own.
     const bool own_places = map_->config().use == Use::close_loops && map_->file() == nullptr;
     numbers_.emplace(map_->config(), own_places ? &map_->places() : nullptr);
@@ -53,21 +56,26 @@ class Stepper {
               const Argument<std::optional<double>, "time_s">& given) {
     const std::optional<double>& time_s = given;
     std::span<const float> values;
-    if (descriptor) values = python::descriptor(*descriptor, map_->places().descriptor_size());
-    if (time_s && !std::isfinite(*time_s)) {
-      throw SetupError({"time_s", "it is not finite", "give seconds, or leave it out"});
+    Faults faults;
+    if (descriptor) {
+      program::collect(faults, [&] {
+        values = python::descriptor(*descriptor, map_->places().descriptor_size());
+      });
     }
-    if (time_s && std::abs(*time_s) > most_seconds) {
-      throw SetupError({"time_s", fmt::format("{} s are more than 290 years", *time_s),
+    if (time_s && !std::isfinite(*time_s)) {
+      faults.push_back({"time_s", "it is not finite", "give seconds, or leave it out"});
+    } else if (time_s && std::abs(*time_s) > most_seconds) {
+      faults.push_back({"time_s", fmt::format("{} s are more than 290 years", *time_s),
                         "give seconds, not nanoseconds"});
     }
+    program::refuse(std::move(faults));
     std::optional<std::string> trouble;
     Report report;
     {
       const Unlocked unlocked;
-      const std::scoped_lock lock(guard());
+      const auto lock = guard();
       program::LastingMap* const file = kept_on();
-      if (map_->config().difference == Difference::euclidean) check_length(values);
+      if (map_->config().difference == Difference::euclidean) check_norm(values);
       skip_what_never_came();
       stepped_ = true;
       const std::uint64_t frame = frames_++;
@@ -92,7 +100,7 @@ class Stepper {
 
   void skip(const Argument<std::uint64_t, "frames">& frames) {
     const Unlocked unlocked;
-    const std::scoped_lock lock(guard());
+    const auto lock = guard();
     static_cast<void>(kept_on());
     const std::uint64_t count = frames;
     if (count > most_frames || frames_ + count > most_frames) {
@@ -108,7 +116,7 @@ class Stepper {
     std::optional<std::string> unsaved;
     {
       const Unlocked unlocked;
-      const std::scoped_lock lock(guard());
+      const auto lock = guard();
       program::LastingMap* const file = kept();
       if (file == nullptr || !rest_) {
         skip_what_never_came();
@@ -131,7 +139,7 @@ class Stepper {
     std::vector<float> column;
     {
       const Unlocked unlocked;
-      const std::scoped_lock lock(guard());
+      const auto lock = guard();
       if (!stepped_) throw SetupError({"newest_column", "there was no step yet", "step first"});
       column.resize(map_->places().size());
       detector_->newest_column(column);
@@ -142,13 +150,23 @@ class Stepper {
     return as_array(column, {static_cast<py::ssize_t>(column.size())});
   }
 
+  [[nodiscard]] std::string text() { return "Detector(" + map_->text() + ")"; }
+
  private:
   /// All at once: of a long gap the detector counts none, of a short one each.
   void skip_what_never_came() noexcept { detector_->skip(std::exchange(never_came_, 0)); }
 
   /// A detector that closes loops changes its map.
-  [[nodiscard]] std::mutex& guard() noexcept {
-    return map_->config().use == Use::close_loops ? map_->mutex() : mutex_;
+  [[nodiscard]] std::unique_lock<std::mutex> guard() {
+    return map_->config().use == Use::close_loops ? map_->lock() : std::unique_lock(mutex_);
+  }
+
+  /// Of the map: how long the drive will be, nobody knows. Throws SetupError.
+  void check_length() const {
+    Faults faults;
+    const MatcherConfig& config = map_->config();
+    program::check_length(faults, config, config.sequence_length + 1, map_->frames());
+    program::refuse(std::move(faults));
   }
 
   /// Where its drive is saved; null: nowhere. A map that is only read is in memory, whole.
@@ -172,7 +190,7 @@ class Stepper {
   }
 
   /// What a detector takes for a frame that could not be read is more likely a mistake here.
-  static void check_length(std::span<const float> values) {
+  static void check_norm(std::span<const float> values) {
     const double squares = squared_norm(values);
     if (!std::isfinite(squares) || squares == 0.0 || std::abs(squares - 1.0) <= 0.01) return;
     throw SetupError({"descriptor",
@@ -228,9 +246,12 @@ PYBIND11_MODULE(_core, module) {
       "empty and takes its places from the drive that the detector steps through.\n"
       "settings: as seqloop.settings() lists them.\n"
       "Errors: SetupError, a ValueError with every fault at once.")
-      .def(py::init<const Argument<std::int64_t, "max_places">&,
-                    const Argument<std::int64_t, "descriptor_size">&,
-                    const Argument<bool, "close_loops">&, const py::kwargs&>(),
+      .def(py::init([](const Argument<std::int64_t, "max_places">& places,
+                       const Argument<std::int64_t, "descriptor_size">& size,
+                       const Argument<bool, "close_loops">& close_loops,
+                       const py::kwargs& settings) {
+             return Map::in_memory(places, size, close_loops, settings);
+           }),
            py::arg("max_places"), py::arg("descriptor_size"), py::arg("close_loops") = false)
       .def_static(
           "open",
@@ -247,7 +268,10 @@ PYBIND11_MODULE(_core, module) {
           "another session while it steps; finish() saves the rest. Several may share a map that\n"
           "is only read. `with` closes the file.\n"
           "map: made where it is missing. descriptor_size: D.\n"
-          "max_places: most that it can hold; None: what it has, and 20,000 more.\n"
+          "max_places: most that it can hold; None: what it has, and 20,000 more, as on a live\n"
+          "camera. With room for more than 20,480 a frame looks at more of the map, so that a few\n"
+          "answers depend on it: those of `seqloop match --map` come with as many as the map has,\n"
+          "and the drive has frames.\n"
           "describer: what describes the drive, Describer.fingerprint or words of yours; only "
           "what\n"
           "was described alike can be compared.\n"
@@ -255,11 +279,13 @@ PYBIND11_MODULE(_core, module) {
           "began by default. save_every_s: seconds of driving that may be unsaved, 1. grow:\n"
           "'novel', places that later laps have seen often enough go, or 'all' stay.\n"
           "settings: as seqloop.settings() lists them.\n"
+          "The file belongs to the process that opens it: in a fork of that, calls are refused\n"
+          "and the file stays as it is. What is only read may be used there.\n"
           "Errors: SetupError: held by another process, of another form, damaged, no space, …")
       .def(
           "where",
-          [](Map& map, const Argument<std::uint64_t, "place">& place) {
-            const auto [session, frame] = map.where(place);
+          [](const std::shared_ptr<Map>& map, const Argument<std::uint64_t, "place">& place) {
+            const auto [session, frame] = map->where(place);
             return std::pair(seqloop::python::readable(session), frame);
           },
           py::arg("place"),
@@ -283,11 +309,10 @@ PYBIND11_MODULE(_core, module) {
            "Rows are brought to unit length; a blank row, all zeros, shows what the one before\n"
            "it showed. A map holds one drive. Errors: SetupError.")
       .def("__len__", outliving(&Map::size), "How many places it holds.")
-      .def_property_readonly(
-          "capacity", [](Map& map) { return map.places().capacity(); }, "Most places.")
-      .def_property_readonly(
-          "descriptor_size", [](Map& map) { return map.places().descriptor_size(); },
-          "D, values in a descriptor.");
+      .def_property_readonly("capacity", outliving(&Map::capacity), "Most places.")
+      .def_property_readonly("descriptor_size", outliving(&Map::descriptor_size),
+                             "D, values in a descriptor.")
+      .def("__repr__", outliving(&Map::text));
 
   py::class_<Stepper, std::shared_ptr<Stepper>>(
       module, "Detector",
@@ -319,7 +344,8 @@ PYBIND11_MODULE(_core, module) {
            "was computed, which is nearly everywhere unless all rows are candidates\n"
            "(method=\"seqcnnslam\"). Closing loops, frames that became no places have no row, so "
            "that\n"
-           "rows are not the numbers of places. Errors: SetupError before the first step.");
+           "rows are not the numbers of places. Errors: SetupError before the first step.")
+      .def("__repr__", outliving(&Stepper::text));
 
   seqloop::python::add_recordings(module);
   seqloop::python::add_map_files(module);

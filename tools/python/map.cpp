@@ -2,6 +2,8 @@
 #include "python/map.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -42,29 +44,49 @@ void check(Faults& faults, std::int64_t places, std::int64_t descriptor_size,
   }
 }
 
-}  // namespace
+constexpr auto nothing_said = "descriptors";
 
-Map::Map(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
-         const py::kwargs& settings)
-    : Map(in_memory(places, descriptor_size, close_loops, settings)) {}
+/// The program's remedy is for who has nothing but descriptors. Here there may be a describer.
+void suit_remedies(Faults& faults, const std::string& describer) {
+  if (describer != nothing_said) return;
+  for (Fault& fault : faults) {
+    if (fault.why.find("described by") == std::string::npos) continue;
+    if (fault.why.find(fmt::format("described by '{}'", nothing_said)) != std::string::npos)
+      continue;
+    fault.remedy = "describer=describer.fingerprint, of a Describer as the one that made the map";
+  }
+}
+
+}  // namespace
 
 Map::Map(Chosen chosen)
     : config_(chosen.config),
       method_(std::move(chosen.method)),
       in_file_(chosen.file != nullptr),
+      opened_by_(::getpid()),
       map_(config_, chosen.capacity),
+      name_(std::move(chosen.name)),
       file_(std::move(chosen.file)) {
   opencv::expect_builtin(map_);
 }
 
-Map::Chosen Map::in_memory(std::int64_t places, std::int64_t descriptor_size, bool close_loops,
-                           const py::kwargs& settings) {
+Map::~Map() {
+  if (!opened_elsewhere()) return;
+  // What saves is no thread of this process, and closing SQLite's file may remove the log beside
+  // it.
+  static_cast<void>(saving_.release());
+  static_cast<void>(file_.release());
+}
+
+std::shared_ptr<Map> Map::in_memory(std::int64_t places, std::int64_t descriptor_size,
+                                    bool close_loops, const py::kwargs& settings) {
   Faults faults;
   const MatcherConfig config =
       config_of(close_loops ? Use::close_loops : Use::localise, size_of(places), settings, faults);
   check(faults, places, descriptor_size, config);
   program::refuse(std::move(faults));
-  return {config, {size_of(places), size_of(descriptor_size)}};
+  const Unlocked unlocked;
+  return std::shared_ptr<Map>(new Map(Chosen{config, {size_of(places), size_of(descriptor_size)}}));
 }
 
 std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t descriptor_size,
@@ -89,7 +111,14 @@ std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   program::refuse(std::move(faults));
   const std::size_t drive = size_of(places.value_or(usual_drive));
   const Unlocked unlocked;
-  chosen.file = program::open_map(settings, chosen.config, size_of(descriptor_size), describer);
+  chosen.name = std::make_unique<OpenFile>(file, settings.read_only);
+  try {
+    chosen.file = program::open_map(settings, chosen.config, size_of(descriptor_size), describer);
+  } catch (const SetupError& error) {
+    faults = error.faults();
+    suit_remedies(faults, describer);
+    throw SetupError(std::move(faults));
+  }
   chosen.capacity = chosen.file->capacity(drive);
   if (places) {
     if (chosen.file->places() > drive) {
@@ -126,7 +155,7 @@ void Map::add_drive(const Given& descriptors) {
   }
   program::refuse(std::move(faults));
   const Unlocked unlocked;
-  const std::scoped_lock lock(mutex_);
+  const auto locked = lock();
   if (map_.size() != 0) {
     throw SetupError({"map", "it holds a drive already", "make a map for each drive"});
   }
@@ -136,7 +165,7 @@ void Map::add_drive(const Given& descriptors) {
     if (frame.index % frames_between_looks == 0) look_for_interruption();
   };
   try {
-    program::fill_map(map_, source, nullptr, config_, silent, look);
+    frames_ = program::fill_map(map_, source, nullptr, config_, silent, look).frames;
   } catch (...) {  // a part of a drive is none to localise in
     map_ = PlaceMap(config_, {map_.capacity(), map_.descriptor_size()});
     opencv::expect_builtin(map_);
@@ -146,8 +175,13 @@ void Map::add_drive(const Given& descriptors) {
 
 std::size_t Map::size() {
   const Unlocked unlocked;
-  const std::scoped_lock lock(mutex_);
+  const auto locked = lock();
   return map_.size();
+}
+
+std::string Map::text() {
+  return fmt::format("PlaceMap(max_places={}, descriptor_size={}, close_loops={})", capacity(),
+                     descriptor_size(), config_.use == Use::close_loops ? "True" : "False");
 }
 
 program::LastingMap* Map::file() {
@@ -157,7 +191,7 @@ program::LastingMap* Map::file() {
 
 std::pair<std::string, std::optional<std::uint64_t>> Map::where(std::uint64_t place) {
   const Unlocked unlocked;
-  const std::scoped_lock lock(mutex_);
+  const auto locked = lock();
   const program::LastingMap* const kept = file();
   if (kept == nullptr) {
     throw SetupError({"map", "it is in no file, and has one drive", "the place is its frame"});
@@ -171,17 +205,31 @@ std::pair<std::string, std::optional<std::uint64_t>> Map::where(std::uint64_t pl
 
 std::uint64_t Map::saved() {
   const Unlocked unlocked;
-  const std::scoped_lock lock(mutex_);
+  const auto locked = lock();
   const program::LastingMap* const kept = file();
   if (kept == nullptr) throw SetupError({"map", "it is in no file", "PlaceMap.open"});
   return kept->saved();
 }
 
 void Map::close() {
+  if (opened_elsewhere()) return;
   const Unlocked unlocked;
-  const std::scoped_lock lock(mutex_);
+  const auto locked = lock();
   saving_.reset();
   file_.reset();
+  name_.reset();
+}
+
+bool Map::opened_elsewhere() const noexcept { return in_file_ && opened_by_ != ::getpid(); }
+
+std::unique_lock<std::mutex> Map::lock() {
+  // Before the lock, which a thread of the other process may have held. A map that is only read is
+  // in memory, whole.
+  if (opened_elsewhere() && config_.use == Use::close_loops) {
+    throw SetupError({"map", fmt::format("process {} opened it, and this is a fork", opened_by_),
+                      "open a map in the process that uses it"});
+  }
+  return std::unique_lock(mutex_);
 }
 
 void Map::claim() {

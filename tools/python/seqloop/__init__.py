@@ -39,7 +39,7 @@ type, such as a string for a number of places, are TypeErrors, as are too few, t
 a name that is none.
 
 `Describer` needs OpenCV, which is loaded when it is asked for, as `help(seqloop)` does; importing
-the package loads none.
+the package loads none. What forks may not do, PlaceMap.open says.
 
 Frames and places are counted from 0, frames that never came too. Differences and scores are 0 to 2
 between unit vectors, lower is better; probabilities 0 to 1.
