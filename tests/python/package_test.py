@@ -13,6 +13,7 @@ import os
 import pathlib
 import pickle
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -20,6 +21,7 @@ import tempfile
 import threading
 import typing
 import unittest
+import warnings
 
 import numpy
 
@@ -84,6 +86,21 @@ class Imports(unittest.TestCase):
         self.assertEqual(done.returncode == 0, knows, done.stderr)
         if not knows:
             self.assertRegex(done.stderr, "ImportError: this is NumPy 2.1.0, .*: use NumPy 1, or build")
+
+    def test_another_python_is_refused(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            copied = pathlib.Path(folder, "seqloop")
+            shutil.copytree(pathlib.Path(seqloop.__file__).parent, copied)
+            built = pathlib.Path(seqloop._core.__file__).name
+            version = "{}.{}".format(*sys.version_info)
+            for name, words in (("_core.cpython-35m-x86_64-linux-gnu.so",
+                                 f"seqloop is built for Python 3.5, and this is Python {version}: use that one, or"),
+                                (None, "seqloop is not built in .*: build the target seqloop_python")):
+                copied.joinpath(built).rename(copied / name) if name else copied.joinpath(built).unlink()
+                built = name or built
+                done = subprocess.run([sys.executable, "-B", "-c", "import seqloop"], capture_output=True, text=True,
+                                      env={**os.environ, "PYTHONPATH": folder})
+                self.assertRegex(done.stderr, "ImportError: " + words)
 
     def test_help_is_enough_to_begin(self) -> None:
         shown = subprocess.run([sys.executable, "-B", "-c", "import seqloop; help(seqloop)"], check=True,
@@ -202,10 +219,28 @@ class Settings(unittest.TestCase):
         usual = as_csv(seqloop.match(reference, query, ds=10, vmin=.9, standardise=False))
         for same in ({"ds": "10", "vmin": "0.9", "standardise": "off"},
                      {"ds": numpy.int64(10), "vmin": numpy.float32(.9), "standardise": False, "k": None},
-                     {"ds": 10, "vmin": .9, "standardise": numpy.bool_(False)}):
+                     {"ds": 10, "vmin": .9, "standardise": numpy.bool_(False)},
+                     {"ds": 10.0, "vmin": .9, "standardise": False},
+                     {"ds": numpy.float32(10), "vmin": .9, "standardise": False}):
             self.assertEqual(as_csv(seqloop.match(reference, query, **same)), usual)
-        with self.assertRaisesRegex(seqloop.SetupError, r"ds: \[\[10\]\] is not of its type"):
-            seqloop.match(reference, query, ds=[[10]])
+        for settings, words in (({"ds": [[10]]}, r"ds: \[\[10\]\] is not of its type"),
+                                ({"ds": 10.5}, "ds: '10.5' is no whole number"),
+                                ({"ds": numpy.inf}, "ds: 'inf' is no whole number"),
+                                ({"standardise": 0}, "standardise: 0 is neither True nor False$"),
+                                ({"standardise": "yes"}, "standardise: 'yes' is neither True nor False$")):
+            with self.assertRaisesRegex(seqloop.SetupError, words):
+                seqloop.match(reference, query, **settings)
+
+    def test_where_settings_are_listed(self) -> None:
+        reference, query = drives()
+        for call, where in ((seqloop.Describer, "seqloop.Describer.settings()"),
+                            (lambda **given: seqloop.PlaceMap(9, 9, **given), "seqloop.settings()"),
+                            (lambda **given: seqloop.PlaceMap.open("m", 9, **given), "help(seqloop.PlaceMap.open)"),
+                            (lambda **given: seqloop.match(reference, query, **given), "seqloop.settings()"),
+                            (lambda **given: seqloop.evaluate(seqloop.match(reference, query), **given),
+                             "help(seqloop.evaluate)")):
+            with self.assertRaisesRegex(seqloop.SetupError, "'quite_another': is no setting; see .*" + re.escape(where)):
+                call(quite_another=3)
 
     def test_names_that_are_no_utf8(self) -> None:
         reference, query = drives()
@@ -224,11 +259,18 @@ class Settings(unittest.TestCase):
     def test_commands_in_messages_are_the_programs(self) -> None:
         with self.assertRaisesRegex(seqloop.SetupError, "`seqloop run --map`"):
             seqloop.map_info("/nowhere")
+        with self.assertRaisesRegex(seqloop.SetupError, "memory: .*; lower max_places; `seqloop plan` shows"):
+            seqloop.PlaceMap(2**32 - 2, 100_000)
 
     def test_a_model_that_is_not_there(self) -> None:
         with self.assertRaises(seqloop.SetupError) as raised:
             seqloop.Describer(model=pathlib.Path("/nowhere.onnx"), lay="x")
         self.assertEqual(len(raised.exception.faults), 2)
+
+
+class Pillow:
+    """As far as anybody looks, an image of PIL."""
+    __array_interface__: dict = {}
 
 
 class Arrays(unittest.TestCase):
@@ -257,6 +299,8 @@ class Arrays(unittest.TestCase):
         odd = numpy.frombuffer(b"x" + self.query[0].tobytes(), numpy.float32, offset=1)
         report = self.detector.step(numpy.require(odd, numpy.float32, "CA"))
         self.assertEqual(report.newest, 0, "what was refused is no frame")
+        with self.assertRaisesRegex(seqloop.SetupError, "(?s)descriptor: its shape.*time_s: it is not finite"):
+            self.detector.step(self.query, time_s=numpy.nan)
         self.assertEqual(self.detector.step(numpy.ma.array(self.query[1])).newest, 1, "nothing is masked")
 
     def test_what_is_no_array_is_told_in_a_sentence(self) -> None:
@@ -273,7 +317,7 @@ class Arrays(unittest.TestCase):
                  "(?s)reference: its type is list.*query: its type is NoneType"),
                 (lambda: seqloop.match(None, rows[0][0]), "query: its type is float"),
                 (lambda: describer.describe(rows), r"picture: .* list.*asarray\(picture, numpy.uint8\)$"),
-                (lambda: describer.describe(None), "picture: its type is NoneType"),
+                (lambda: describer.describe(None), "picture: it is None, .* not be read; step.None. tells"),
                 (lambda: describer.describe(pathlib.Path("a.jpg")), "picture: 'a.jpg' is a name.*cv2.imread")):
             with self.assertRaisesRegex(seqloop.SetupError, words) as raised:
                 call()
@@ -388,8 +432,11 @@ class Arrays(unittest.TestCase):
         broken[4, 2] = numpy.nan
         for query, words in ((broken, "query: holds NaN in row 4, column 2"), (self.query[0], r"\(48,\)"),
                              (self.query.astype(numpy.int32), "int32"), (self.query[:0], r"\(0, 48\)"),
-                             (self.query[:5], "shorten ds")):
-            with self.assertRaisesRegex(seqloop.SetupError, words):
+                             (self.query[:5], "shorten ds"),
+                             (-1e200 * self.query.astype(numpy.float64), r"query: it holds .*e\+199, which is beyond flo"),
+                             (numpy.full((200, 48), numpy.inf), "query: holds infinity in row 0")):
+            with self.assertRaisesRegex(seqloop.SetupError, words), warnings.catch_warnings():
+                warnings.simplefilter("error")
                 seqloop.match(self.reference, query, ds=10)
 
     def test_pictures(self) -> None:
@@ -405,7 +452,10 @@ class Arrays(unittest.TestCase):
         self.assertFalse((describer.describe(numpy.zeros((90, 160), numpy.uint8))).any(), "blank")
         for bad, words in ((picture.astype(numpy.float32), "float32"), (picture[..., ::-1], "side by side"),
                            (picture[::-1], "side by side"), (picture[:, ::2], "side by side"),
-                           (picture[:0], r"\(0, 160, 3\)"), (picture[..., :2], r"\(90, 160, 2\)")):
+                           (picture[:0], r"empty, of shape \(0, 160, 3\); step\(None\) tells"),
+                           (picture[..., :2], r"\(90, 160, 2\)"),
+                           (numpy.ma.array(picture, mask=picture > 9), r"masked.*; fill it first, picture.filled\(0\)"),
+                           (Pillow(), r"its type is Pillow, .*red comes first.*'RGB'\)\)\[..., ::-1\]\)$")):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 describer.describe(bad)
 
@@ -687,7 +737,7 @@ class SameAsTheProgram(unittest.TestCase):
                 seqloop.evaluate(matches, truth, reference_positions=places, query_positions=driven)
             with self.assertRaisesRegex(seqloop.SetupError, "radius: it goes with positions"):
                 seqloop.evaluate(matches, truth, radius=5)
-        with self.assertRaisesRegex(seqloop.SetupError, "they are one file"):
+        with self.assertRaisesRegex(seqloop.SetupError, "reference_positions, query_positions: they are one file"):
             seqloop.evaluate(matches, reference_positions=places, query_positions=places)
 
     def test_measures_refuse(self) -> None:
@@ -779,6 +829,11 @@ class SameAsTheProgram(unittest.TestCase):
                 (ones[0], ones.astype(int), {"method": "seqslam"}, r"(?s)reference: .*\(4,\).*query: .*int64.*method"),
                 (numpy.array(3.0), ones, {}, r"reference: its shape is \(\)"),
                 (numpy.float32(3), ones, {}, "reference: its type is float32, not numpy.ndarray"),
+                ([1], ones, {"quite_another": 1, "vmin": -1},
+                 "(?s)reference: its type is list.*'quite_another'.*vmin"),
+                (ones * [1, 2, numpy.nan, 4], ones[:, :3], {},
+                 "(?s)^reference: holds NaN in row 0, column 2.*4 values in a row of one"),
+                (ones, ones * 1e300, {}, "^query: it holds 1e.300, which is beyond float32"),
                 (ones, ones[:, :3], {}, "4 values in a row of one, 3 in a row of the other")):
             with self.assertRaisesRegex(seqloop.SetupError, words):
                 seqloop.differences(reference, query, **settings)

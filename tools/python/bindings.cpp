@@ -43,11 +43,22 @@ std::string in_keywords(std::string_view text) {
   return out;
 }
 
+/// Whether these are names of options, such as `reference-positions, query-positions`.
+bool are_names(std::string text) {
+  const std::string_view between = ", ";
+  for (std::size_t at = 0; (at = text.find(between)) != std::string::npos;) {
+    text.erase(at, between.size());
+  }
+  return text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
+}
+
 Fault in_keywords(const Fault& fault) {
-  const bool name =
-      fault.what.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
-  return {name ? keyword(fault.what) : in_keywords(fault.what), in_keywords(fault.why),
-          in_keywords(fault.remedy)};
+  // The library's words, which know no settings, and no program.
+  if (fault.what == "memory" && fault.remedy.starts_with("lower the capacity")) {
+    return {fault.what, fault.why, "lower max_places; `seqloop plan` shows what each buffer takes"};
+  }
+  return {are_names(fault.what) ? keyword(fault.what) : in_keywords(fault.what),
+          in_keywords(fault.why), in_keywords(fault.remedy)};
 }
 
 bool is_list(const py::handle& value) {
@@ -90,13 +101,17 @@ std::optional<std::string> value_text(const py::handle& value, ValueKind kind) {
   }
   const py::object number = py::module_::import("numbers").attr("Number");
   if (!py::isinstance(value, number)) return std::nullopt;
+  if (kind == ValueKind::count && py::hasattr(value, "is_integer") &&
+      value.attr("is_integer")().cast<bool>()) {
+    return py::str(py::int_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  }
   // A NumPy float32 of .9 is .9, not what it is as a double.
   return py::str(value).cast<std::string>();
 }
 
 }  // namespace
 
-Faults set_options(const OptionTable& options, const py::kwargs& given) {
+Faults set_options(const OptionTable& options, const py::kwargs& given, const std::string& listed) {
   Faults faults;
   std::vector<std::string> names;
   for (const Option& option : options.options()) names.push_back(option.name);
@@ -110,13 +125,17 @@ Faults set_options(const OptionTable& options, const py::kwargs& given) {
       const std::string meant = program::nearest(name, names);
       faults.push_back(
           {"'" + spelt + "'", "is no setting",
-           meant.empty() ? "see seqloop.settings()" : "did you mean '" + keyword(meant) + "'?"});
+           meant.empty() ? "see " + listed : "did you mean '" + keyword(meant) + "'?"});
       continue;
     }
     const auto text = value_text(value, option->kind);
     if (!text) {
       faults.push_back({name, shown(value) + " is not of its type",
                         option->kind == ValueKind::flag ? "give True or False" : option->help});
+      continue;
+    }
+    if (option->kind == ValueKind::on_off && *text != "on" && *text != "off") {
+      faults.push_back({name, shown(value) + " is neither True nor False"});
       continue;
     }
     for (Fault& fault : OptionTable::set(*option, *text)) faults.push_back(std::move(fault));
@@ -181,28 +200,29 @@ bool is_masked(const py::handle& value) {
          value.attr("mask").attr("any")().cast<bool>();
 }
 
-Array array_of(const Given& given, const std::string& name, const std::string& type,
-               const std::string& reading) {
+Array array_of(const Given& given, const std::string& name, const Remedies& remedies) {
   const py::object& value = given.value;
   if (py::isinstance<Array>(value)) {
     if (is_masked(value)) {
-      throw SetupError({name, "some of it is masked, and would count all the same",
-                        "leave those rows out, or give None for such a frame"});
+      throw SetupError(
+          {name, "some of it is masked, and would count all the same", remedies.unmasking});
     }
     return py::reinterpret_borrow<Array>(value);
   }
   if (py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__")) {
     const py::object path = py::module_::import("os").attr("fspath")(value);
     throw SetupError(
-        {name, py::repr(path).cast<std::string>() + " is a name, not an array", reading});
+        {name, py::repr(path).cast<std::string>() + " is a name, not an array", remedies.reading});
   }
-  throw SetupError({name, "its type is " + type_name(value) + ", not numpy.ndarray",
-                    fmt::format("numpy.asarray({}, numpy.{})", name, type)});
+  throw SetupError(
+      {name, "its type is " + type_name(value) + ", not numpy.ndarray", remedies.converting});
 }
 
 Array descriptors_of(const Given& given, const std::string& name) {
-  return array_of(given, name, "float32",
-                  "numpy.load a described drive, or take describe_drive of pictures");
+  return array_of(given, name,
+                  {"numpy.load a described drive, or take describe_drive of pictures",
+                   "leave those rows out, or give None for such a frame",
+                   fmt::format("numpy.asarray({}, numpy.float32)", name)});
 }
 
 bool is_plain(const Array& array) {

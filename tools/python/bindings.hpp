@@ -79,21 +79,26 @@ template <class Value>
 /// A value as Python writes it or, where that is long, its type.
 [[nodiscard]] std::string shown(const pybind11::handle& value);
 
+/// What to do about an argument that is no array, or not the one that is meant.
+struct Remedies {
+  std::string reading;     ///< it is the name of a file
+  std::string unmasking;   ///< some of it is masked
+  std::string converting;  ///< it is anything else
+};
+
 /// The array that was given. @param name of the argument
-/// @param type    what its values should be, `float32`
-/// @param reading what to do where it is the name of a file
 /// Throws SetupError: it is none.
-[[nodiscard]] Array array_of(const Given& given, const std::string& name, const std::string& type,
-                             const std::string& reading);
+[[nodiscard]] Array array_of(const Given& given, const std::string& name, const Remedies& remedies);
 
 /// An array that should hold descriptors. Throws SetupError.
 [[nodiscard]] Array descriptors_of(const Given& given, const std::string& name);
 
 /// Sets options by keyword arguments: `full_map="thin"` for `--full-map thin`. True and False are
 /// on and off, a list is its values with commas between; None leaves an option as it is.
+/// @param listed where all of them are
 /// @return everything that is wrong with them
-[[nodiscard]] Faults set_options(const program::OptionTable& options,
-                                 const pybind11::kwargs& given);
+[[nodiscard]] Faults set_options(const program::OptionTable& options, const pybind11::kwargs& given,
+                                 const std::string& listed = "seqloop.settings()");
 
 /// Name and help of every option, as keyword arguments.
 [[nodiscard]] pybind11::dict described(const program::OptionTable& options);

@@ -99,7 +99,8 @@ std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   program::OptionTable options;
   add_map_options(options, settings);
   add_matcher_options(options, matcher);
-  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
+  const std::string listed = "seqloop.settings() and help(seqloop.PlaceMap.open)";
+  for (Fault& fault : set_options(options, given, listed)) faults.push_back(std::move(fault));
   settings.file = file;
   if (file.empty()) faults.push_back({"map", "its name is empty", "name a file"});
   check(settings, false, faults);

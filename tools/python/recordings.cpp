@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -27,6 +28,19 @@ namespace seqloop::python {
 namespace {
 
 namespace py = pybind11;
+
+/// Throws SetupError: some numbers are none as float32, which would make them infinite.
+void check_range(const Array& drive, const std::string& name) {
+  if (static_cast<std::size_t>(drive.itemsize()) <= sizeof(float)) return;
+  constexpr double most_float = std::numeric_limits<float>::max();
+  const auto least = drive.attr("min")().cast<double>();
+  const auto most = drive.attr("max")().cast<double>();
+  const double largest = std::max(-least, most);
+  if (!(largest > most_float) || !std::isfinite(largest)) return;
+  throw SetupError(
+      {name, fmt::format("it holds {}, which is beyond float32", largest == most ? most : least),
+       "give smaller values"});
+}
 
 /// The columns of the program's match list.
 py::dict columns_of(const program::MatchedDrive& matched) {
@@ -215,7 +229,8 @@ py::dict evaluate(const py::object& matches, const std::optional<Array>& truth,
   add_truth_options(options, settings);
   options.text("threshold-on", threshold_on, "give uniqueness, score or probability");
   options.count("frames", frames, "give how many queries have a truth, or leave it out");
-  for (Fault& fault : set_options(options, given)) faults.push_back(std::move(fault));
+  const std::string listed = "help(seqloop.evaluate)";
+  for (Fault& fault : set_options(options, given, listed)) faults.push_back(std::move(fault));
   std::vector<evaluation::Answer> answers;
   program::collect(faults, [&] {
     evaluation::ThresholdOn on{};
@@ -279,6 +294,7 @@ Array drive_of(const Given& given, const std::string& name) {
                       "give floating-point descriptors"});
   }
   program::refuse(std::move(faults));
+  check_range(array, name);
   return array;
 }
 
@@ -306,12 +322,15 @@ void add_recordings(py::module_& module) {
   module.def("match", &match, py::arg("reference").none(true), py::arg("query").none(true));
   module.def(
       "drive_faults",
-      [](const Given& drive, const std::string& name) {
+      [](const Given& given, const std::string& name, bool finite) {
         Faults faults;
-        program::collect(faults, [&] { static_cast<void>(drive_of(drive, name)); });
+        program::collect(faults, [&] {
+          const Array drive = drive_of(given, name);
+          if (finite) static_cast<void>(matrix(drive, name, Difference::mean_absolute));
+        });
         return listed(faults);
       },
-      py::arg("drive"), py::arg("name"));
+      py::arg("drive"), py::arg("name"), py::arg("finite"));
   module.def("evaluate", &evaluate, py::arg("matches"), py::arg("pairs").none(true));
   module.def("settings", [] { return described(program::add_matcher_options); });
 }

@@ -21,11 +21,26 @@ namespace py = pybind11;
 
 /// A picture, where it lies.
 Image image(const Given& given) {
-  const Array picture = array_of(given, "picture", "uint8", "read it, with cv2.imread");
+  const std::string unread = "step(None) tells the detector of a frame that could not be read";
+  if (given.value.is_none()) {
+    throw SetupError({"picture", "it is None, as of a picture that could not be read", unread});
+  }
+  const bool of_pil = py::hasattr(given.value, "__array_interface__");
+  const Array picture =
+      array_of(given, "picture",
+               {"read it, with cv2.imread", "fill it first, picture.filled(0)",
+                of_pil ? "where red comes first, as in PIL: "
+                         "numpy.ascontiguousarray(numpy.asarray(picture.convert('RGB'))[..., ::-1])"
+                       : "blue first: numpy.asarray(picture, numpy.uint8)"});
   const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(picture);
   const bool gray = picture.ndim() == 2;
   const bool colour = picture.ndim() == 3 && picture.shape(2) == 3;
-  if (!bytes || (!gray && !colour) || picture.size() == 0) {
+  if (picture.size() == 0) {
+    throw SetupError({"picture",
+                      "it is empty, of shape " + py::str(picture.attr("shape")).cast<std::string>(),
+                      unread});
+  }
+  if (!bytes || (!gray && !colour)) {
     throw SetupError({"picture",
                       "it is " + py::str(picture.dtype()).cast<std::string>() + " of shape " +
                           py::str(picture.attr("shape")).cast<std::string>(),
@@ -52,7 +67,7 @@ class PictureDescriber {
   explicit PictureDescriber(const py::kwargs& given) {
     program::OptionTable options;
     program::add_drive_options(options, settings_);
-    Faults faults = set_options(options, given);
+    Faults faults = set_options(options, given, "seqloop.Describer.settings()");
     program::collect(faults, [&] {
       if (faults.empty()) {
         const Unlocked unlocked;

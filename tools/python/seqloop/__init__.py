@@ -50,13 +50,17 @@ import dataclasses
 import os
 import typing
 
-import numpy
-import numpy.typing
+from . import _built_for
 
-from . import _calls, _core
-from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work, __version__
-from ._errors import SetupError
-from ._types import Gate, Setting
+_built_for.refuse_others(os.path.dirname(__file__))  # before another Python's NumPy is missed
+
+import numpy  # noqa: E402
+import numpy.typing  # noqa: E402
+
+from . import _calls, _core  # noqa: E402
+from ._core import Answer, Belief, Detector, Match, PlaceMap, Report, Work, __version__  # noqa: E402
+from ._errors import SetupError  # noqa: E402
+from ._types import Gate, Setting  # noqa: E402
 
 if typing.TYPE_CHECKING:
     from ._vision import Describer
@@ -183,7 +187,7 @@ class MapInfo:
 
 
 def _setup_error(faults: list[tuple[str, str, str]]) -> SetupError:
-    error = SetupError("\n".join(f"{what}: {why}; {remedy}" for what, why, remedy in faults))
+    error = SetupError("\n".join(f"{what}: {why}" + f"; {remedy}" * bool(remedy) for what, why, remedy in faults))
     error.faults = faults
     return error
 
@@ -233,16 +237,21 @@ def differences(reference: Floats, query: Floats, **settings: Setting) -> numpy.
     negative): the matcher itself never keeps it whole.
     Errors: SetupError.
     """
-    faults = _core.drive_faults(reference, "reference") + _core.drive_faults(query, "query")
-    if not faults and reference.shape[1] != query.shape[1]:
+    faults = _core.drive_faults(reference, "reference", True) + _core.drive_faults(query, "query", False)
+    matrices = all(isinstance(drive, numpy.ndarray) and drive.ndim == 2 for drive in (reference, query))
+    if matrices and reference.shape[1] != query.shape[1]:
         faults.append(("reference, query", f"{reference.shape[1]} values in a row of one, "
                        f"{query.shape[1]} in a row of the other", "describe both with the same model and layer"))
     if settings.get("method") not in (None, "single"):
         faults.append(("method", "differences are of single frames", "leave method out"))
+    settings["method"] = "single"
+    rows, size = (1, 1) if faults else reference.shape  # settings are looked at all the same
+    try:
+        places = PlaceMap(rows, size, False, **settings)
+    except SetupError as error:
+        faults += error.faults
     if faults:
         raise _setup_error(faults)
-    settings["method"] = "single"
-    places = PlaceMap(len(reference), reference.shape[1], False, **settings)
     places.add_drive(reference)
     detector = Detector(places)
     matrix = numpy.full((len(reference), len(query)), numpy.nan, numpy.float32)
