@@ -22,7 +22,7 @@ import zlib
 import numpy
 
 import seqloop
-from package_test import drives, program
+from package_test import drives, program, unit
 
 SIZE = 48
 
@@ -89,6 +89,22 @@ class Maps(unittest.TestCase):
         for file in (theirs, ours, crossed):
             program("map", "check", file)
             self.assertEqual(seqloop.check_map(file), [])
+
+    def test_with_the_same_room_answers_are_the_same(self) -> None:
+        # More than 20,480 places, from where on a frame looks at more of the map the more room there is.
+        random = numpy.random.default_rng(3)
+        places = random.standard_normal((21_000, SIZE))
+        again = numpy.concatenate([places[first:first + 60] for first in (300, 15_000, 20_000, 4_000)])
+        again += .35 * random.standard_normal(again.shape)
+        for name, rows in (("drive", places), ("again", again)):
+            numpy.save(self.work / f"{name}.npy", unit(rows))
+        theirs, ours = self.work / "theirs.seqloop", self.work / "ours.seqloop"
+        self.match(theirs, "drive", "--session", "drive")
+        shutil.copy(theirs, ours)
+        said = self.match(theirs, "again")
+        with self.open(ours, max_places=len(places) + len(again)) as room:
+            self.assertEqual(stepped(room, unit(again)), said)
+        self.assertGreater(sum(row[-1] == "1" for row in said), 100)
 
     def test_a_map_that_is_only_read_stays_as_it_is_and_is_shared(self) -> None:
         file = self.work / "map.seqloop"
