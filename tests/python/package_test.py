@@ -505,7 +505,6 @@ class Lives(unittest.TestCase):
         self.assertTrue(any(numpy.isnan(answer.probability) for report in reports for answer in report.answers))
         self.assertEqual(repr(detector), "Detector(PlaceMap(max_places=200, descriptor_size=48, close_loops=False))")
         for kind in (seqloop.Report, seqloop.Answer, seqloop.Match, seqloop.Belief, seqloop.Work):
-            self.assertIn("=", repr(kind.__new__(kind)), "empty, but no crash")
             with self.assertRaisesRegex(TypeError, "No constructor"):
                 kind()
         for kind, use in ((seqloop.PlaceMap, len), (seqloop.Detector, repr), (seqloop.Describer, lambda one: one.size)):

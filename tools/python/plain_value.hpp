@@ -27,16 +27,7 @@ template <class Value, class... Owners, class... Held>
 pybind11::class_<Value> add_plain_value(pybind11::module_& module, const char* name,
                                         const char* meaning, Member<Owners, Held>... members) {
   namespace py = pybind11;
-  // pickle and copy give `__new__` what `__getnewargs__` said. pybind11's own would leave no value.
-  const auto filled_by_new = [](PyHeapTypeObject* heap_type) {
-    heap_type->ht_type.tp_new = [](PyTypeObject* made, PyObject* held, PyObject* /*named*/) {
-      PyObject* const of = PyObject_GetAttrString(reinterpret_cast<PyObject*>(made), "_of");
-      PyObject* const value = of != nullptr ? PyObject_CallObject(of, held) : nullptr;
-      Py_XDECREF(of);
-      return value;
-    };
-  };
-  py::class_<Value> type(module, name, meaning, py::custom_type_setup(filled_by_new));
+  py::class_<Value> type(module, name, meaning);
   (type.def_property_readonly(
        members.name, [at = members.at](const Value& value) { return value.*at; }, members.meaning),
    ...);
@@ -53,16 +44,14 @@ pybind11::class_<Value> add_plain_value(pybind11::module_& module, const char* n
     return py::bool_(py::repr(value).equal(py::repr(other)));
   });
   type.def("__hash__", [](const py::object& value) { return py::hash(py::repr(value)); });
-  type.def("__getnewargs__",
-           [members...](const Value& value) { return py::make_tuple(value.*members.at...); });
-  type.def_static("_of", [members...](const py::args& held) {
-    Value value;
-    std::size_t next = 0;
-    if (held.size() == sizeof...(Held)) {
-      ((value.*members.at = held[next++].template cast<Held>()), ...);
-    }
-    return value;
-  });
+  type.def(
+      py::pickle([members...](const Value& value) { return py::make_tuple(value.*members.at...); },
+                 [members...](const py::tuple& held) {
+                   Value value;
+                   std::size_t next = 0;
+                   ((value.*members.at = held[next++].template cast<Held>()), ...);
+                   return value;
+                 }));
   return type;
 }
 
