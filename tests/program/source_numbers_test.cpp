@@ -154,6 +154,38 @@ TEST(SourceNumbers, OfAMapThatForgets) {
   }
 }
 
+// Frames that nothing is seen of where the robot stands become places once it has gone on.
+TEST(SourceNumbers, OfPlacesThatWereHeldBack) {
+  constexpr std::size_t size = 16;
+  MatcherConfig closing = config(0);
+  closing.use = Use::close_loops;
+  const auto drive = oracle::drive(1, 60, size);
+  PlaceMap map(closing, {100, size});
+  Detector detector(closing, map);
+  SourceNumbers numbers(closing, &map);
+  std::uint64_t counted = 0;
+  const auto take = [&](std::span<const float> descriptor) {
+    static_cast<void>(detector.step(descriptor));
+    ProcessedFrame frame = processed(counted + 1000, counted);
+    numbers.rename(frame);
+    ++counted;
+  };
+  for (std::size_t frame = 0; frame < drive.size(); ++frame) {
+    take(drive[frame]);
+    if (frame % 20 != 10) continue;
+    take(drive[frame]);
+    for (std::size_t i = 0; i < 2 * closing.sequence_length; ++i) take({});
+  }
+  EXPECT_EQ(map.size(), drive.size() + 3 * 2 * closing.sequence_length);
+  ProcessedFrame frame = processed(counted + 1000, counted);
+  for (std::size_t row = 0; row < map.size(); ++row) {
+    const std::uint64_t number = map.order().number(row);
+    frame.report.match = Match{.place = number, .head = number};
+    numbers.rename(frame);
+    EXPECT_EQ(frame.report.match->place, number + 1000) << row;
+  }
+}
+
 TEST(SourceNumbers, LeaveAnotherDrivesPlacesAlone) {
   SourceNumbers numbers(config(), nullptr);
   ProcessedFrame frame = processed(90, 0);

@@ -7,10 +7,10 @@ namespace {
 /// A number that is an index.
 std::size_t at(std::uint64_t number) noexcept { return static_cast<std::size_t>(number); }
 
-/// Frames back from the newest that an answer may be about: those that wait, and as many more as
-/// may be skipped at once.
+/// Frames back from the newest that an answer may be about, those that wait and as many more as may
+/// be skipped at once, or that may become places: those that were held back.
 std::size_t reach(const MatcherConfig& config) {
-  return config.patience + config.sequence_length + 2;
+  return config.patience + 2 * config.sequence_length + 2;
 }
 
 }  // namespace
@@ -40,16 +40,20 @@ std::span<const Answer> SourceNumbers::rename(std::span<const Answer> answers) n
   return answers_;
 }
 
-/// What the detector has counted since the last frame came just before this one.
+/// What the detector has counted since the last frame came just before this one. Frames before
+/// that may have become places since.
 void SourceNumbers::note(std::uint64_t newest, std::uint64_t index) noexcept {
+  const std::uint64_t first = counted_;
   for (; counted_ <= newest; ++counted_) {
-    const std::uint64_t before = newest - counted_;
-    recent_[at(counted_ % recent_.size())] = index - before;
-    if (map_ == nullptr) continue;
-    if (const auto row = map_->order().row_of_number(counted_)) {
-      places_[map_->order().slot(*row)] = index - before;
-    }
+    recent_[at(counted_ % recent_.size())] = index - (newest - counted_);
   }
+  if (map_ == nullptr) return;
+  const PlaceOrder& order = map_->order();
+  for (std::size_t row = order.size(); row > 0 && order.number(row - 1) >= next_place_; --row) {
+    const std::uint64_t number = order.number(row - 1);
+    places_[order.slot(row - 1)] = number < first ? frame(number) : index - (newest - number);
+  }
+  next_place_ = order.next_number();
 }
 
 std::uint64_t SourceNumbers::frame(std::uint64_t counted) const noexcept {

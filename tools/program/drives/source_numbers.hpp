@@ -23,7 +23,7 @@ class SourceNumbers {
   /// Notes a frame that the detector has just taken, and puts the source's numbers into its report:
   /// `newest`, `frame`, those of its answers and, where loops are closed, those of places. Nothing
   /// changes at the gate `no_frame`.
-  /// Work: frames since the last call; log N a place. Allocates: never.
+  /// Work: frames and places since the last call; log N a place that is told. Allocates: never.
   void rename(ProcessedFrame& processed) noexcept;
 
   /// @param answers of the detector's `finish`
@@ -40,7 +40,8 @@ class SourceNumbers {
   std::vector<std::uint64_t> recent_;  // by the detector's number, modulo as many as still matter
   std::vector<std::uint64_t> places_;  // by slot of the map
   std::vector<Answer> answers_;
-  std::uint64_t counted_ = 0;  // frames that the detector has counted
+  std::uint64_t counted_ = 0;     // frames that the detector has counted
+  std::uint64_t next_place_ = 0;  // number of the place that is noted next, or less
 };
 
 }  // namespace seqloop::program
