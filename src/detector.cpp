@@ -447,27 +447,31 @@ void Detector::skip(std::uint64_t frames) noexcept {
     restart();
     return;
   }
-  if (holds_back(frames)) return;
   const std::uint64_t steps = steps_of(frames);
+  if (may_be_no_steps()) {
+    hold_back(frames, steps);
+    return;
+  }
+  held_back_ = {};
   steps_.skip(frames);
   if (steps > 0) newest_was_seen_ = false;
   pass(steps, frames);
 }
 
-/// Frames that nothing is seen of, where the robot stood with the newest one that could be read,
-/// are part of that stop if the next one that can be read is: that will tell. So many at most are
-/// held back as are a window before it and one behind it.
-/// @return whether they are
-bool Detector::holds_back(std::uint64_t frames) noexcept {
-  const bool stands = !told_.empty() && newest_was_seen_ && !keyframes_.is_dense() &&
-                      steps_.repeats(queries_.newest());
-  if (!stands || held_back_ + frames > 2 * config_.sequence_length) {
-    held_back_ = 0;
-    return false;
-  }
-  held_back_ += steps_of(frames);
+/// Whether the next frame that can be read tells what those before it are that nothing is seen of:
+/// where the robot stood with the newest one that could be read, or it usually takes more than one
+/// to see something new. As many are held back until then as are a window before it and one behind.
+bool Detector::may_be_no_steps() const noexcept {
+  return !told_.empty() && newest_was_seen_ &&
+         (keyframes_.is_dense() || steps_.repeats(queries_.newest())) &&
+         held_back_.steps < 2 * config_.sequence_length;
+}
+
+/// @param steps that the frames are if the next one shows something new
+void Detector::hold_back(std::uint64_t frames, std::uint64_t steps) noexcept {
+  held_back_.frames += frames;
+  held_back_.steps += steps;
   steps_.skip(frames);
-  return true;
 }
 
 /// The robot went on by so many steps with the newest frames that nothing was seen of.
@@ -488,7 +492,7 @@ void Detector::pass(std::uint64_t steps, std::uint64_t frames) noexcept {
 }
 
 void Detector::restart() noexcept {
-  held_back_ = 0;
+  held_back_ = {};
   answered_.begin();
   believed_.begin();
   window_began_ = queries_.frames();
@@ -505,7 +509,11 @@ void Detector::restart() noexcept {
 /// the frame before when there is nothing to take.
 Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept {
   if (descriptor.size() != map_->descriptor_size() || !well_formed(descriptor, config_)) {
-    if (holds_back(1)) return {false, false};
+    if (may_be_no_steps()) {
+      hold_back(1, steps_of(1));
+      return {false, false};
+    }
+    held_back_ = {};
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     ++unread_;
@@ -520,13 +528,13 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
   }
   statistics_.follow(descriptor, config_.standardisation);
   const bool is_keyframe = told_.empty() || keyframes_.take(descriptor, statistics_.variance_sum());
-  const std::uint64_t held_back = std::exchange(held_back_, 0);
+  const HeldBack held_back = std::exchange(held_back_, {});
   if (!is_keyframe && newest_was_seen_) {
     steps_.repeat();
-    if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand(held_back + 1);
+    if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand(held_back.frames + 1);
     return {true, false};
   }
-  if (held_back > 0) pass(held_back, held_back);
+  if (held_back.frames > 0) pass(held_back.steps, held_back.frames);
   using enum FrameSteps::Shows;
   steps_.take(keyframes_.is_settled(), !is_keyframe          ? the_same
                                        : keyframes_.is_cut() ? another_scene

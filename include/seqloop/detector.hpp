@@ -99,11 +99,12 @@ class Detector {
 
   /// Takes note of frames that never came: the camera lost them, or they were dropped. Up to ds of
   /// them, in one call or several, are frames at which the scene stood still, so that trajectories
-  /// keep their velocities; closing loops, they become places. Where the robot stood, the next
-  /// frame that can be read tells whether they are part of that stop. With more, what was seen
-  /// before says nothing of now: the window begins anew (`warming_up`), and of that call none is
-  /// counted. None is before the first step, either. Work: N + D copies a frame at most; no
-  /// distances, no line-sums. Allocates: never. Source: src/README.md, section 5.7.
+  /// keep their velocities; closing loops, they become places. Where the robot stood, or frames
+  /// follow each other closely, the next one that can be read tells whether they are steps at all.
+  /// With more, what was seen before says nothing of now: the window begins anew (`warming_up`),
+  /// and of that call none is counted. None is before the first step, either. Work: N + D copies a
+  /// frame at most; no distances, no line-sums. Allocates: never. Source: src/README.md,
+  /// section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.
@@ -171,7 +172,13 @@ class Detector {
   [[nodiscard]] Taken take_query(std::span<const float> descriptor) noexcept;
   [[nodiscard]] FrameReport report_again() noexcept;
   [[nodiscard]] FrameReport report_unseen() noexcept;
-  [[nodiscard]] bool holds_back(std::uint64_t frames) noexcept;
+  /// Frames of which what comes next tells what they are.
+  struct HeldBack {
+    std::uint64_t frames = 0;
+    std::uint64_t steps = 0;  ///< that they are if the next one shows something new
+  };
+  [[nodiscard]] bool may_be_no_steps() const noexcept;
+  void hold_back(std::uint64_t frames, std::uint64_t steps) noexcept;
   void pass(std::uint64_t steps, std::uint64_t frames) noexcept;
   [[nodiscard]] bool may_be_elsewhere(std::uint64_t step) const noexcept;
   void tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept;
@@ -211,7 +218,7 @@ class Detector {
   FrameSteps steps_;
   std::uint64_t skipped_ = 0;         // frames since the last that came
   bool newest_was_seen_ = false;      // the newest step is a frame that could be read
-  std::uint64_t held_back_ = 0;       // frames since that step; what comes next tells what they are
+  HeldBack held_back_;                // since that step
   std::uint64_t unread_ = 0;          // frames in a row, up to the newest
   std::uint64_t unseen_ = 0;          // steps in a row that nothing was seen at
   FrameReport last_;                  // of that step

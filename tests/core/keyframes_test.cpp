@@ -715,6 +715,34 @@ TEST(Keyframes, OfARobotThatStoodAreKnownOnceSomethingIsSeenAgain) {
   }
 }
 
+// Where frames follow each other closely, those that cannot be read are on the way to the next
+// keyframe, and none themselves.
+TEST(Keyframes, OfASlowRobotAreAsUsualWhereFramesCannotBeRead) {
+  constexpr std::size_t slower = 6;
+  Vectors laps = test::slowly(test::way(1, 200, 0.3F, 1), slower, 1);
+  const std::size_t lap = laps.size();
+  const Vectors again = test::slowly(test::way(1, 200, 0.3F, 2), slower, 2);
+  laps.insert(laps.end(), again.begin(), again.end());
+  std::size_t read = 0;
+  for (std::size_t frame = 0; frame < laps.size(); ++frame) {
+    const bool can_be_read = frame % 8 < 4;
+    if (!can_be_read) laps[frame].clear();
+    read += can_be_read && frame >= lap ? 1 : 0;
+  }
+  MatcherConfig config;
+  config.use = Use::close_loops;
+  PlaceMap map(config, {laps.size(), laps.front().size()});
+  std::size_t found = 0;
+  for (const auto& [frame, answer] : answers_of(laps, config, map)) {
+    if (answer.gate != Gate::match) continue;
+    ++found;
+    EXPECT_NEAR(static_cast<double>(answer.match->frame() + lap), static_cast<double>(frame),
+                5.0 * slower);
+  }
+  EXPECT_LT(map.size(), laps.size() / 3);
+  EXPECT_GT(found, read / 2);
+}
+
 // Who comes to a stop is at its beginning, even if nothing is known of him before, and frames may
 // be asked for in any order.
 TEST(StopFrames, GoByTogetherInDriveAndMap) {
