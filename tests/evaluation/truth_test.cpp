@@ -118,24 +118,28 @@ TEST(Truth, ByPositionsOnAPlan) {
 
 TEST(Truth, WhatIsNotListedCanBeUnknown) {
   const CsvTable table("query,reference\n4,10\n", "t.csv");
-  EXPECT_TRUE(Truth::from_csv(table).judges(5));
+  EXPECT_TRUE(Truth::from_csv(table).judges(5, 10));
   const Truth truth = Truth::from_csv(table, Unlisted::unknown);
-  EXPECT_TRUE(truth.judges(4));
-  EXPECT_FALSE(truth.judges(5));
+  EXPECT_TRUE(truth.judges(4, 9));
+  EXPECT_FALSE(truth.judges(5, 10));
   // A frame whose position is known, far from all others, is new.
   const Positions here = positions("frame,x,y\n0,0,0\n");
   const Positions there = positions("frame,x,y\n0,0,0\n1,99,0\n");
   const Truth placed = Truth::from_positions(here, there, 5.0, Unlisted::unknown);
   EXPECT_EQ(placed.frames(), 1U);
-  EXPECT_TRUE(placed.judges(1));
+  EXPECT_TRUE(placed.judges(1, 0));
   EXPECT_FALSE(placed.right(1, 0, 9));
-  EXPECT_FALSE(placed.judges(2));
+  EXPECT_FALSE(placed.judges(2, 0));
+  EXPECT_TRUE(placed.knows(0));
+  EXPECT_FALSE(placed.knows(1));
+  EXPECT_FALSE(placed.judges(0, 1)) << "nobody knows where that place is";
+  EXPECT_TRUE(Truth::from_positions(here, there, 5.0).judges(0, 1)) << "wrong, unless it is asked";
 }
 
 TEST(Truth, WithoutARevisitNothingIsRight) {
   const Truth truth = Truth::no_revisit();
   EXPECT_EQ(truth.frames(), 0U);
-  EXPECT_TRUE(truth.judges(3));
+  EXPECT_TRUE(truth.judges(3, 3));
   EXPECT_FALSE(truth.right(3, 3, 100));
 }
 
@@ -227,9 +231,10 @@ TEST(Truth, OfLoopsIsWhatTheRobotHadLeftInBetween) {
         EXPECT_EQ(truth.right(3 * query, 3 * match, 9), loop) << query << ' ' << match;
         loops += loop ? 1U : 0U;
       }
-      EXPECT_TRUE(truth.judges(3 * query)) << "new, where it comes back to nothing";
+      EXPECT_TRUE(truth.judges(3 * query, 0)) << "new, where it comes back to nothing";
     }
-    EXPECT_FALSE(truth.judges(1));
+    EXPECT_FALSE(truth.judges(1, 0));
+    EXPECT_FALSE(truth.judges(3, 1));
   }
   EXPECT_GT(loops, 500U);
   const Positions ahead = positions("frame,x,y\n0,0,0\n1,9,0\n2,18,0\n");

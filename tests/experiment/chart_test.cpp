@@ -71,6 +71,20 @@ TEST(Chart, DrawsPrecisionOverRecallTheBestFirst) {
   EXPECT_TRUE(chart.panels[0].lines[2].marks.empty());
 }
 
+TEST(Chart, CountsAnswersOnceThatAreShownUnderTwoNames) {
+  Report report;
+  report.results = {synthetic_result("p", "m", "d", {}, 0.5),
+                    synthetic_result("p", "m (best)", "d", {}, 0.5)};
+  for (Result& result : report.results) result.measures.reliability[9] = {100, 90, 90.0};
+  report.results[1].is_copy = true;
+  report.figures = {figure(FigureKind::reliability, {"descriptor"}),
+                    figure(FigureKind::reliability, {"method"})};
+  EXPECT_EQ(chart_of(report, 0).panels.at(0).lines.at(0).counts.at(9).answers, 100U);
+  const Chart apart = chart_of(report, 1);
+  ASSERT_EQ(apart.panels.at(0).lines.size(), 2U);
+  for (const Line& line : apart.panels[0].lines) EXPECT_EQ(line.counts.at(9).answers, 100U);
+}
+
 TEST(Chart, DrawsHowReliableProbabilitiesAre) {
   Report report;
   report.results = {synthetic_result("p", "bold", "d", {}, 0.5),
@@ -95,7 +109,13 @@ TEST(Chart, DrawsHowReliableProbabilitiesAre) {
   EXPECT_DOUBLE_EQ(honest.counts[7].x, 0.75);
   EXPECT_EQ(honest.counts[7].answers, 1000U);
   EXPECT_TRUE(chart.panels[0].lines[2].points.empty());
+  EXPECT_EQ(chart.panels[0].lines[1].breaks.back(), 0U);
   const std::string svg = figure_svg(chart, "t");
+  const std::size_t curve = svg.find("class=\"curve\" d=\"M");
+  ASSERT_NE(curve, std::string::npos);
+  const std::string path = svg.substr(curve, svg.find("/>", curve) - curve);
+  EXPECT_EQ(std::ranges::count(path, 'M'), 2) << path << ": six empty tenths lie between";
+  EXPECT_EQ(std::ranges::count(path, 'L'), 0) << path;
   for (const char* part : {"class=\"diagonal\"", ">1.0k</text>", ">12k</text>", ">10</text>"}) {
     EXPECT_NE(svg.find(part), std::string::npos) << part;
   }

@@ -47,6 +47,22 @@ TEST_F(EvalByPositions, CountsWhatLiesWithinTheRadius) {
   EXPECT_EQ(wide["correct"], 4) << "25 m where no radius is given";
 }
 
+// As of a receiver that is slower than the camera.
+TEST_F(EvalByPositions, SaysWhichPlacesHaveNone) {
+  folder_.write("r.csv", "frame,x,y\n0,0,0\n2,20,0\n3,30,0\n");
+  const auto wrong = run("eval --json --matches m.csv --radius 9 " + both_);
+  EXPECT_NE(wrong.err.find("1 of 4 answers name a place that has no position, and count as wrong"),
+            std::string::npos)
+      << wrong.err;
+  EXPECT_EQ(nlohmann::json::parse(wrong.out)["answered"], 4);
+  const auto unknown = run("eval --json --matches m.csv --radius 9 --unlisted unknown " + both_);
+  EXPECT_EQ(unknown.err, "");
+  const auto json = nlohmann::json::parse(unknown.out);
+  EXPECT_EQ(json["answered"], 3);
+  EXPECT_EQ(json["unknown"], 1);
+  EXPECT_EQ(json["correct"], 3);
+}
+
 TEST_F(EvalByPositions, OneRowsToleranceThroughTheFlags) {
   folder_.write("t.csv", "query,reference,tolerance\n0,1,1\n1,4,0\n2,4,9\n");
   const auto json =

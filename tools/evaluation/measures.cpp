@@ -36,8 +36,8 @@ double area(const std::vector<CurvePoint>& curve) {
 Measures measure(std::vector<Answer> answers, const Truth& truth, std::uint64_t tolerance,
                  std::uint64_t frames) {
   Measures measures;
-  measures.unknown =
-      std::erase_if(answers, [&](const Answer& answer) { return !truth.judges(answer.query); });
+  measures.unknown = std::erase_if(
+      answers, [&](const Answer& answer) { return !truth.judges(answer.query, answer.match); });
   std::stable_sort(answers.begin(), answers.end(), more_certain);
   std::uint64_t accepted = 0;
   std::uint64_t accepted_correct = 0;

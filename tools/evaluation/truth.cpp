@@ -97,6 +97,7 @@ Truth Truth::from_positions(Positions reference, const Positions& query, double 
   std::ranges::sort(reference.places, {}, northing);
   Truth truth;
   truth.unlisted_ = unlisted;
+  truth.known_ = frames_of(reference);
   for (const Positions::Place& here : query.places) {
     truth.places_[here.frame] = runs_of(frames_near(reference.places, here, most));
   }
@@ -115,6 +116,7 @@ Truth Truth::loops_from_positions(const Positions& drive, double radius_m, Unlis
   std::ranges::sort(driven, {}, &Positions::Place::frame);
   Truth truth;
   truth.unlisted_ = unlisted;
+  truth.known_ = frames_of(drive);
   for (auto here = driven.begin(); here != driven.end(); ++here) {
     auto came = here;  // the robot has been near since then
     while (came != driven.begin() && within(*std::prev(came), *here, most)) --came;
@@ -127,6 +129,12 @@ Truth Truth::loops_from_positions(const Positions& drive, double radius_m, Unlis
                       "widen it, or give the truth no-revisit if nothing comes back"});
   }
   return truth;
+}
+
+std::set<std::uint64_t> Truth::frames_of(const Positions& positions) {
+  std::set<std::uint64_t> frames;
+  for (const Positions::Place& place : positions.places) frames.insert(place.frame);
+  return frames;
 }
 
 std::vector<Truth::Run> Truth::runs_of(std::span<const std::uint64_t> frames) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -63,9 +64,14 @@ class Truth {
   [[nodiscard]] std::uint64_t queries_reach() const noexcept;
   [[nodiscard]] std::uint64_t places_reach() const noexcept;
 
-  /// Whether an answer to this query is either right or wrong.
-  [[nodiscard]] bool judges(std::uint64_t query) const noexcept {
-    return unlisted_ == Unlisted::wrong || places_.contains(query);
+  /// Whether an answer is either right or wrong.
+  [[nodiscard]] bool judges(std::uint64_t query, std::uint64_t match) const noexcept {
+    return unlisted_ == Unlisted::wrong || (places_.contains(query) && knows(match));
+  }
+
+  /// Whether it is known where a place is: all are, but by positions those that have one.
+  [[nodiscard]] bool knows(std::uint64_t place) const noexcept {
+    return !known_ || known_->contains(place);
   }
 
   /// Where it is all of them, no asked tolerance counts.
@@ -86,8 +92,11 @@ class Truth {
   /// @param frames ascending
   static std::vector<Run> runs_of(std::span<const std::uint64_t> frames);
 
+  static std::set<std::uint64_t> frames_of(const Positions& positions);
+
   std::optional<std::uint64_t> identity_frames_;      // set: frame i shows place i
   std::map<std::uint64_t, std::vector<Run>> places_;  // of a query that is new: none
+  std::optional<std::set<std::uint64_t>> known_;      // places; unset: all
   Unlisted unlisted_ = Unlisted::wrong;
   OwnTolerances own_tolerances_ = OwnTolerances::none;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "experiment/report/spread.hpp"
 #include "experiment/report/text.hpp"
@@ -92,7 +93,7 @@ std::string text_at(double x, double y, const char* attributes, const std::strin
 }
 
 /// Without points that no eye could tell from their neighbours.
-std::string path_through(const std::vector<Point>& pixels) {
+std::string path_through(std::span<const Point> pixels) {
   constexpr double same = 0.3;
   std::vector<Point> kept;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -110,6 +111,19 @@ std::string path_through(const std::vector<Point>& pixels) {
   for (const Point& point : kept) {
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", point.x, point.y);
   }
+  return path;
+}
+
+/// The parts of a line between its breaks.
+std::string path_of(const Line& line, std::span<const Point> pixels) {
+  std::string path;
+  std::size_t first = 0;
+  const auto draw_to = [&](std::size_t end) {
+    if (end > first) path += path_through(pixels.subspan(first, end - first));
+    first = end;
+  };
+  for (const std::size_t end : line.breaks) draw_to(end);
+  draw_to(pixels.size());
   return path;
 }
 
@@ -148,7 +162,7 @@ std::string line_svg(const Line& line, const Scale& x, const Scale& y, const Lay
   if (!pixels.empty()) {
     svg += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n",
                        pixels.back().x, pixels.back().y, text - 4.0, label);
-    svg += fmt::format("<path class=\"curve\" d=\"{}\"/>\n", path_through(pixels));
+    svg += fmt::format("<path class=\"curve\" d=\"{}\"/>\n", path_of(line, pixels));
   }
   for (const Point& mark : line.marks) {
     svg += fmt::format("<circle class=\"mark\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\"/>\n",

@@ -31,18 +31,25 @@ Line curve(const Result& result) {
   return line;
 }
 
-/// Answers of all the results, counted together.
+/// Answers of all the results, counted together, each once.
 Line reliability_line(const Chosen& results) {
   constexpr std::uint64_t enough = 50;  // answers, for a share of them to mean something
   evaluation::Reliability all{};
-  for (const Result* result : results) all = together(all, result->measures.reliability);
+  const auto is_copy = [](const Result* result) { return result->is_copy; };
+  const bool all_are_copies = std::ranges::all_of(results, is_copy);
+  for (const Result* result : results) {
+    if (all_are_copies || !is_copy(result)) all = together(all, result->measures.reliability);
+  }
   const double error = expected_calibration_error(all);
   Line line{.value = shown(Unit::share, error)};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const evaluation::ReliabilityBin& bin = all[i];
     const double middle = (static_cast<double>(i) + 0.5) / static_cast<double>(all.size());
     line.counts.push_back({middle, bin.count});
-    if (bin.count == 0) continue;
+    if (bin.count == 0) {
+      line.breaks.push_back(line.points.size());
+      continue;
+    }
     line.points.push_back({bin.mean_probability(), bin.share_right()});
     if (bin.count >= enough) line.marks.push_back(line.points.back());
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct Line {
   std::string name = {};
   std::string value = {};  ///< written before the name
   LineStyle style = {};
-  std::vector<Point> points = {};  ///< rising x; empty where there is nothing to draw
+  std::vector<Point> points = {};        ///< rising x; empty where there is nothing to draw
+  std::vector<std::size_t> breaks = {};  ///< points that nothing leads to from the one before
   std::vector<Point> marks = {};
   std::vector<Count> counts = {};  ///< written under the plot, in a row of their own
   double good = 0.0;               ///< lines are listed by it, best first

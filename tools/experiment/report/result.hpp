@@ -36,6 +36,7 @@ struct Result {
   bool alone = false;                ///< no other run was matched meanwhile
   std::string made_by{};             ///< program and machine
   std::string matrix{};              ///< fingerprint of its matrix's picture; empty: none
+  bool is_copy = false;              ///< of another result, under another method's name
   /// Seconds of the exhaustive search over the same descriptors with the same sequence length, by
   /// `seconds`; NaN where it was not run, or where runs shared a machine.
   double speed_up = std::numeric_limits<double>::quiet_NaN();

@@ -65,6 +65,7 @@ void add_best(const Experiment& experiment, std::vector<Result>& results) {
     }
     for (auto& [group, result] : best) {
       result.method += " (best)";
+      result.is_copy = true;
       results.push_back(std::move(result));
     }
   }

@@ -124,6 +124,15 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
     say("no answer has a {}, so that all enter the curve at once; choose another --threshold-on",
         name_of(threshold_on));
   }
+  const auto nowhere = std::ranges::count_if(answers, [&](const evaluation::Answer& answer) {
+    return judge.truth.judges(answer.query, answer.match) && !judge.truth.knows(answer.match);
+  });
+  if (nowhere > 0) {
+    say("{} of {} answers name a place that has no position, and count as wrong; --unlisted "
+        "unknown "
+        "leaves them out",
+        nowhere, answers.size());
+  }
   const evaluation::Measures measures =
       measure(answers, judge.truth, tolerance(settings.truth), judge.frames);
   if (settings.json) {
