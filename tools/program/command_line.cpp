@@ -215,7 +215,8 @@ int parse_and_run(int argc, char** argv, const std::vector<Verb>& verbs) {
   std::vector<std::string> all_names;
   std::set<std::string> valued{"config"};
   std::vector<Given> given(verbs.size());
-  CLI::App app("Visual loop closure in fixed memory and bounded time", "seqloop");
+  CLI::App app("Visual loop closure in fixed memory and bounded time",
+               argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "seqloop");
   app.set_version_flag("--version", version_line());
   app.set_help_all_flag("--help-all", "Print all flags of all subcommands and exit");
   app.require_subcommand(1);
