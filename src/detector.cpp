@@ -67,10 +67,11 @@ std::optional<double> spacing_of(const PlaceMap& map) {
   return *middle;
 }
 
-/// Steps whose frames are asked for: those that wait, and the newest that are no candidates yet.
+/// Steps whose frames are asked for: those that wait, the newest that are no candidates yet, and
+/// those that come at once where frames were held back.
 std::size_t steps_kept(const MatcherConfig& config) {
   const std::size_t newest = config.use == Use::close_loops ? config.exclude : 0;
-  return std::max(config.patience, newest) + 2 * config.sequence_length + config.frames_at_once +
+  return std::max(config.patience, newest) + 3 * config.sequence_length + config.frames_at_once +
          StopRun::reach + 2;
 }
 
@@ -452,7 +453,6 @@ void Detector::skip(std::uint64_t frames) noexcept {
     hold_back(frames, steps);
     return;
   }
-  held_back_ = {};
   steps_.skip(frames);
   if (steps > 0) newest_was_seen_ = false;
   pass(steps, frames);
@@ -460,11 +460,10 @@ void Detector::skip(std::uint64_t frames) noexcept {
 
 /// Whether the next frame that can be read tells what those before it are that nothing is seen of:
 /// where the robot stood with the newest one that could be read, or it usually takes more than one
-/// to see something new. As many are held back until then as are a window before it and one behind.
+/// to see something new.
 bool Detector::may_be_no_steps() const noexcept {
   return !told_.empty() && newest_was_seen_ &&
-         (keyframes_.is_dense() || steps_.repeats(queries_.newest())) &&
-         held_back_.steps < 2 * config_.sequence_length;
+         (keyframes_.is_dense() || steps_.repeats(queries_.newest()));
 }
 
 /// @param steps that the frames are if the next one shows something new
@@ -474,7 +473,19 @@ void Detector::hold_back(std::uint64_t frames, std::uint64_t steps) noexcept {
   steps_.skip(frames);
 }
 
-/// The robot went on by so many steps with the newest frames that nothing was seen of.
+/// The first frame that can be read behind those that were held back shows something new: the robot
+/// has gone on. Where they are more than a window before them and one behind them, nobody knows how
+/// far.
+void Detector::let_go(const HeldBack& held_back) noexcept {
+  if (held_back.frames == 0) return;
+  if (held_back.steps > 2 * config_.sequence_length) {
+    restart();
+    return;
+  }
+  pass(held_back.steps, held_back.frames);
+}
+
+/// So many steps went by with the newest frames that nothing was seen of.
 void Detector::pass(std::uint64_t steps, std::uint64_t frames) noexcept {
   pending_.forget_evidence();
   if (steps == 0) return;
@@ -513,7 +524,6 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
       hold_back(1, steps_of(1));
       return {false, false};
     }
-    held_back_ = {};
     steps_.take(true, FrameSteps::Shows::the_same);
     newest_was_seen_ = false;
     ++unread_;
@@ -534,7 +544,7 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
     if (config_.use == Use::close_loops && !keyframes_.is_dense()) stand(held_back.frames + 1);
     return {true, false};
   }
-  if (held_back.frames > 0) pass(held_back.steps, held_back.frames);
+  let_go(held_back);
   using enum FrameSteps::Shows;
   steps_.take(keyframes_.is_settled(), !is_keyframe          ? the_same
                                        : keyframes_.is_cut() ? another_scene

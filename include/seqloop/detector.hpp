@@ -103,8 +103,8 @@ class Detector {
   /// follow each other closely, the next one that can be read tells whether they are steps at all.
   /// With more, what was seen before says nothing of now: the window begins anew (`warming_up`),
   /// and of that call none is counted. None is before the first step, either. Work: N + D copies a
-  /// frame at most; no distances, no line-sums. Allocates: never. Source: src/README.md,
-  /// section 5.7.
+  /// frame at most, in this call or the next step; no distances, no line-sums. Allocates: never.
+  /// Source: src/README.md, section 5.7.
   void skip(std::uint64_t frames) noexcept;
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.
@@ -179,6 +179,7 @@ class Detector {
   };
   [[nodiscard]] bool may_be_no_steps() const noexcept;
   void hold_back(std::uint64_t frames, std::uint64_t steps) noexcept;
+  void let_go(const HeldBack& held_back) noexcept;
   void pass(std::uint64_t steps, std::uint64_t frames) noexcept;
   [[nodiscard]] bool may_be_elsewhere(std::uint64_t step) const noexcept;
   void tell(const Answer& answer, std::uint64_t frame, bool settled) noexcept;

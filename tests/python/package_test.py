@@ -496,7 +496,9 @@ class Lives(unittest.TestCase):
             values = [*reports, *(answer for report in reports for answer in report.answers),
                       *(report.now for report in reports if report.now), reports[40].match, reports[40].work]
             for value in values:
-                for other in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+                pickled = [pickle.loads(pickle.dumps(value, protocol))
+                           for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+                for other in (*pickled, copy.copy(value), copy.deepcopy(value)):
                     self.assertIsNot(other, value)
                     self.assertEqual((other, hash(other), repr(other)), (value, hash(value), repr(value)))
             self.assertEqual(len(set(reports)), len(reports))

@@ -44,6 +44,11 @@ pybind11::class_<Value> add_plain_value(pybind11::module_& module, const char* n
     return py::bool_(py::repr(value).equal(py::repr(other)));
   });
   type.def("__hash__", [](const py::object& value) { return py::hash(py::repr(value)); });
+  // By itself it would end the interpreter with the protocols 0 and 1, which know no `__new__`.
+  type.def("__reduce__", [](const py::object& value) {
+    return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
+                          py::make_tuple(py::type::of(value)), value.attr("__getstate__")());
+  });
   type.def(
       py::pickle([members...](const Value& value) { return py::make_tuple(value.*members.at...); },
                  [members...](const py::tuple& held) {

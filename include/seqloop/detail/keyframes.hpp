@@ -24,6 +24,12 @@ class Keyframes {
   /// A change is usually taken to be so many frames from the last one at most.
   static constexpr std::uint64_t most_apart = 4;
 
+  /// Frames that may become steps late at most: two windows of keyframes, of which nothing was
+  /// seen.
+  [[nodiscard]] static constexpr std::size_t most_held_back(std::size_t sequence_length) noexcept {
+    return 2 * most_apart * (sequence_length + 1);
+  }
+
   /// Allocates: from the arena only, 8 bytes a feature.
   Keyframes(Arena& arena, std::size_t descriptor_size)
       : last_(arena.take<float>("last keyframe", descriptor_size)),

@@ -10,8 +10,7 @@ std::size_t at(std::uint64_t number) noexcept { return static_cast<std::size_t>(
 /// Frames back from the newest that an answer may be about, those that wait and as many more as may
 /// be skipped at once, or that may become places: those that were held back.
 std::size_t reach(const MatcherConfig& config) {
-  constexpr std::size_t held_back = 3 * Keyframes::most_apart;
-  return config.patience + held_back * config.sequence_length + 2;
+  return config.patience + Keyframes::most_held_back(config.sequence_length) + 2;
 }
 
 }  // namespace

@@ -39,8 +39,9 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
                                            (PlaceMap::most_between + config.sequence_length)),
       first_number_(map.order().next_number()),
       next_number_(first_number_),
-      came_(static_cast<std::size_t>(settled_after_) + 2 * config.sequence_length +
-            MatcherConfig::most_frames_at_once + 2),
+      came_(static_cast<std::size_t>(settled_after_) +
+            Keyframes::most_held_back(config.sequence_length) + MatcherConfig::most_frames_at_once +
+            2),
       source_frames_(map.capacity()),
       numbers_(map.capacity(), none),
       linked_(map.capacity(), none),
