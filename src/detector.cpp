@@ -154,7 +154,7 @@ FrameReport Detector::step(std::span<const float> descriptor) noexcept {
 FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   skipped_ = 0;
   const auto [readable, is_step] = take_query(descriptor);
-  if (!is_step) return readable ? report_again() : report_unseen();
+  if (!is_step) return report_again(readable);
   const std::uint64_t newest = queries_.newest();
   const bool became_place = config_.use == Use::localise || become_place();
   FrameReport report = answer(newest, readable);
@@ -168,37 +168,26 @@ FrameReport Detector::take(std::span<const float> descriptor) noexcept {
   return report;
 }
 
-/// Of a frame that shows what the newest step does.
-FrameReport Detector::report_again() noexcept {
-  if (may_be_hidden()) lose_sight(false);
+/// Of a frame that is no step: it shows what the newest one does, or nothing; that is told at once.
+FrameReport Detector::report_again(bool readable) noexcept {
+  if (readable && may_be_hidden()) lose_sight(false);
   const std::size_t before = pending_.answers().size();
   pending_.answer(*map_, steps_, steps_.frames() - 1, window_began_);
   FrameReport report = last_;
   report.work = {};
   report.full_search = false;
+  if (!readable) report.now.reset();
   say_now(report, true);
   const std::optional<Answer> told_before = its_answer_;
   const std::size_t first = told_count_;
   tell(report, pending_.answers().subspan(before));
-  if (told_before) tell(*told_before, report.newest, keyframes_.is_settled());
+  if (!readable) {
+    told_[told_count_++] = {report.newest, Gate::frame_error, 0.0F, std::nullopt};
+  } else if (told_before) {
+    tell(*told_before, report.newest, keyframes_.is_settled());
+  }
   report.answers = told_.subspan(first, told_count_ - first);
-  say_last(report, queries_.newest(), true);
-  return report;
-}
-
-/// Of a frame that nothing is seen of, where the robot stood.
-FrameReport Detector::report_unseen() noexcept {
-  const std::size_t before = pending_.answers().size();
-  pending_.answer(*map_, steps_, steps_.frames() - 1, window_began_);
-  FrameReport report = last_;
-  report.work = {};
-  report.full_search = false;
-  report.now.reset();
-  const std::size_t first = told_count_;
-  tell(report, pending_.answers().subspan(before));
-  told_[told_count_++] = {report.newest, Gate::frame_error, 0.0F, std::nullopt};
-  report.answers = told_.subspan(first, told_count_ - first);
-  say_last(report, queries_.newest(), false);
+  say_last(report, queries_.newest(), readable);
   return report;
 }
 

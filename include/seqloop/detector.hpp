@@ -170,8 +170,7 @@ class Detector {
     bool step;  ///< or it is the newest one
   };
   [[nodiscard]] Taken take_query(std::span<const float> descriptor) noexcept;
-  [[nodiscard]] FrameReport report_again() noexcept;
-  [[nodiscard]] FrameReport report_unseen() noexcept;
+  [[nodiscard]] FrameReport report_again(bool readable) noexcept;
   /// Frames of which what comes next tells what they are.
   struct HeldBack {
     std::uint64_t frames = 0;
