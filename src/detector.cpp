@@ -462,11 +462,10 @@ void Detector::hold_back(std::uint64_t frames, std::uint64_t steps) noexcept {
   steps_.skip(frames);
 }
 
-/// The first frame that can be read behind those that were held back shows something new: the robot
-/// has gone on. Where they are more than a window before them and one behind them, nobody knows how
-/// far.
+/// The first frame that can be read behind those that were held back, if any, shows something new:
+/// the robot has gone on. Where they are more than a window before them and one behind them, nobody
+/// knows how far.
 void Detector::let_go(const HeldBack& held_back) noexcept {
-  if (held_back.frames == 0) return;
   if (held_back.steps > 2 * config_.sequence_length) {
     restart();
     return;

@@ -65,7 +65,7 @@ Map::Map(Chosen chosen)
       in_file_(chosen.file != nullptr),
       opened_by_(::getpid()),
       map_(config_, chosen.capacity),
-      name_(std::move(chosen.name)),
+      open_file_(std::move(chosen.open_file)),
       file_(std::move(chosen.file)) {
   opencv::expect_builtin(map_);
 }
@@ -112,7 +112,7 @@ std::shared_ptr<Map> Map::open(const std::filesystem::path& file, std::int64_t d
   program::refuse(std::move(faults));
   const std::size_t drive = size_of(places.value_or(usual_drive));
   const Unlocked unlocked;
-  chosen.name = std::make_unique<OpenFile>(file, settings.read_only);
+  chosen.open_file = std::make_unique<OpenFile>(file, settings.read_only);
   try {
     chosen.file = program::open_map(settings, chosen.config, size_of(descriptor_size), describer);
   } catch (const SetupError& error) {
@@ -218,7 +218,7 @@ void Map::close() {
   const auto locked = lock();
   saving_.reset();
   file_.reset();
-  name_.reset();
+  open_file_.reset();
 }
 
 bool Map::opened_elsewhere() const noexcept { return in_file_ && opened_by_ != ::getpid(); }

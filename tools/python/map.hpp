@@ -86,7 +86,7 @@ class Map {
     MatcherConfig config;
     Capacity capacity;
     std::string method = {};
-    std::unique_ptr<OpenFile> name = {};
+    std::unique_ptr<OpenFile> open_file = {};
     std::unique_ptr<program::LastingMap> file = {};
   };
   explicit Map(Chosen chosen);
@@ -102,7 +102,7 @@ class Map {
   bool claimed_ = false;
   std::size_t frames_ = 0;
   PlaceMap map_;
-  std::unique_ptr<OpenFile> name_;
+  std::unique_ptr<OpenFile> open_file_;
   std::unique_ptr<program::LastingMap> file_;
   program::LastingMap::Saving saving_;  // reads the map
 };

@@ -128,9 +128,8 @@ void eval_matches(const EvalSettings& settings, Faults faults) {
     return judge.truth.judges(answer.query, answer.match) && !judge.truth.knows(answer.match);
   });
   if (nowhere > 0) {
-    say("{} of {} answers name a place that has no position, and count as wrong; --unlisted "
-        "unknown "
-        "leaves them out",
+    say("{} of {} answers name a place that has no position, and count as wrong; "
+        "--unlisted unknown leaves them out",
         nowhere, answers.size());
   }
   const evaluation::Measures measures =
