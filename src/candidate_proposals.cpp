@@ -145,7 +145,7 @@ void CandidateProposals::scan(const QueryHistory& queries, const PlaceMap& map, 
   const std::size_t query = queries.row_of(newest_);
   map.order().in_slots(
       first, first + bits.size(), [&](std::size_t row, std::size_t slot, std::size_t count) {
-        map.rows().scan(queries.rows(), query, slot, bits.subspan(row - first, count));
+        map.rows().scan(queries.moved(), query, slot, bits.subspan(row - first, count));
       });
   scanned_ += bits.size();
 }
@@ -185,7 +185,7 @@ void CandidateProposals::prefetch(const PlaceMap& map, std::size_t rows,
 /// The sketch of the frame `back` frames before the newest.
 CloseSketch CandidateProposals::frame_before(const QueryHistory& queries,
                                              std::size_t back) const noexcept {
-  return queries.rows().close_sketch(queries.row_of(newest_ - back));
+  return queries.moved().close_sketch(queries.row_of(newest_ - back));
 }
 
 /// Differing bits of a frame and the row `behind` rows before `row`; one that its session, which

@@ -349,15 +349,16 @@ void DescriptorRows::compare(const DescriptorRows& queries, std::size_t query,
   });
 }
 
-double DescriptorRows::between(std::size_t a, std::size_t b) const noexcept {
+double DescriptorRows::difference(const DescriptorRows& queries, std::size_t query,
+                                  std::size_t row) const noexcept {
   if (form_.arithmetic == Arithmetic::float32) {
-    float difference = 0.0F;
-    compare(*this, a, b, std::span(&difference, 1));
-    return static_cast<double>(difference);
+    float found = 0.0F;
+    compare(queries, query, row, std::span(&found, 1));
+    return static_cast<double>(found);
   }
-  std::uint16_t difference = 0;
-  compare(*this, a, b, std::span(&difference, 1));
-  return difference / form_.unit();
+  std::uint16_t found = 0;
+  compare(queries, query, row, std::span(&found, 1));
+  return found / form_.unit();
 }
 
 void DescriptorRows::scan(const DescriptorRows& queries, std::size_t query, std::size_t first,

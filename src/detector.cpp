@@ -115,6 +115,7 @@ Detector::Detector(const MatcherConfig& config, PlaceMap& map, std::span<std::by
 Detector::Detector(const MatcherConfig& config, PlaceMap& map, ArenaMemory&& memory)
     : Detector(Arena(memory.span()), config, &map, capacity_of(map), std::move(memory)) {
   statistics_.start_from(map.statistics(), drive_prior(config));
+  shift_.stand_in(map.columns());
   if (config.use == Use::close_loops) static_cast<void>(map.begin_session());
   if (has_keyframes(config)) {
     if (const std::optional<double> spacing = spacing_of(map)) keyframes_.go_by(*spacing);
@@ -128,7 +129,9 @@ Detector::Detector(Arena arena, const MatcherConfig& config, PlaceMap* map,
       map_(map),
       trajectories_(arena, config.sequence_length, config.vmin, config.vmax),
       statistics_(arena, capacity.descriptor_size),
-      queries_(arena, DescriptorForm(config, capacity.descriptor_size), queries_kept(config)),
+      queries_(arena, DescriptorForm(config, capacity.descriptor_size), queries_kept(config),
+               moves_frames(config)),
+      shift_(arena, DescriptorForm(config, capacity.descriptor_size), moves_frames(config)),
       slices_(arena, config, queries_, capacity),
       search_(arena, trajectories_, config, capacity.places),
       ranges_(arena, config),
@@ -345,6 +348,7 @@ std::span<const Answer> Detector::finish() noexcept {
   report.answers = pending_.answers();
   if (!told_.empty() && end > 0) tell(report, pending_.answers());
   restart();
+  shift_.begin();
   // Frames that do not come before the next one are none of what has ended.
   skipped_ = config_.sequence_length + 1;
   pending_.forget_drive();
@@ -372,6 +376,7 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
       report.work.sketches +=
           belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows},
                           pending_.chance_of_return(newest));
+      report.work.distances += learn_shift();
     } else {
       lose_sight(true);
     }
@@ -409,6 +414,19 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   ranges_.update(search_.scores(), budget_.runs(), best ? std::optional(best->row) : std::nullopt,
                  change);
   return report;
+}
+
+/// Where the robot is believed to be, the newest frame tells how far to the side it drives.
+/// @return distances that were computed
+std::size_t Detector::learn_shift() noexcept {
+  const auto& likeliest = belief_.likeliest();
+  if (!likeliest || belief_.new_place() >= 0.5) return 0;
+  const int before = shift_.halves();
+  const std::size_t distances =
+      shift_.learn(queries_, standardised_, map_->rows(), map_->order().slot(likeliest->row),
+                   belief_.newest_novelty());
+  if (shift_.halves() != before) pending_.move_from(queries_.frames());
+  return distances;
 }
 
 /// How many steps so many frames are that nothing is seen of.
@@ -539,7 +557,7 @@ Detector::Taken Detector::take_query(std::span<const float> descriptor) noexcept
                                                              : something_new);
   newest_was_seen_ = true;
   statistics_.standardise(descriptor, standardised_);
-  queries_.push(standardised_);
+  queries_.push(standardised_, shift_.moved(standardised_));
   return {true, true};
 }
 

@@ -33,8 +33,10 @@ Work Detector::most_work(const MatcherConfig& config, const Capacity& capacity) 
   if (scans(config)) looks = CandidateProposals::most_looks(config, capacity.places);
   if (config.decision == Decision::probability) looks.closely += PlaceBelief::most_sketches;
   if (relocalises(config)) {
+    const std::size_t moved = moves_frames(config) ? SidewaysShift::distances : 0;
     const std::size_t rows = std::min(CandidateBudget::most_rows(config), capacity.places);
-    return {rows, distances_a_frame(config) + change, rows * lines, looks.scanned, looks.closely};
+    return {rows, distances_a_frame(config) + change + moved, rows * lines, looks.scanned,
+            looks.closely};
   }
   // Where all rows are candidates, a column is computed as its frame arrives. In a growing map, a
   // column that repeats another (`skip`) has as many rows more to look at as it is younger, and

@@ -77,7 +77,7 @@ std::size_t DifferenceSlices::fill_in(ColumnRing<Value>& differences, ColumnRing
       wider.first, wider.last, [&](std::size_t, std::size_t slot, std::size_t count) {
         computed += differences.fill(
             frame, slot, slot + count, [&](std::size_t begin, std::span<Value> out) {
-              map.rows().compare(queries_->rows(), queries_->row_of(frame), begin, out);
+              map.rows().compare(queries_->moved(), queries_->row_of(frame), begin, out);
             });
       });
   if (enhance_) {
@@ -112,7 +112,7 @@ void DifferenceSlices::fill_newest(const PlaceMap& map, std::size_t count) noexc
       columns[i] = differences.take_over(first + i, map.size());
     }
     const std::span<const std::span<Value>> newest = std::span(columns).first(count);
-    map.rows().compare(queries_->rows(), queries_->row_of(first), newest);
+    map.rows().compare(queries_->moved(), queries_->row_of(first), newest);
   };
   if (whole_) {
     fill(whole_differences_);

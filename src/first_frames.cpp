@@ -25,7 +25,7 @@ void FirstFrames::take(const SceneView& view, const Scene& scene) noexcept {
   first_ = view.oldest;
   rows_ = view.rows;
   const QueryHistory& queries = *view.queries;
-  std::ranges::copy(queries.rows().close_sketch(queries.row_of(view.newest)),
+  std::ranges::copy(queries.moved().close_sketch(queries.row_of(view.newest)),
                     sketches_.subspan(count_ * words).begin());
   scenes_[count_++] = scene;
 }

@@ -80,9 +80,13 @@ bool relocalises(const MatcherConfig& config) noexcept {
   return config.relocalising.on && config.candidates != Candidates::all;
 }
 
-bool has_keyframes(const MatcherConfig& config) noexcept {
-  return config.keyframes && relocalises(config) && config.decision == Decision::probability &&
+bool moves_frames(const MatcherConfig& config) noexcept {
+  return relocalises(config) && config.decision == Decision::probability &&
          config.standardisation.on;
+}
+
+bool has_keyframes(const MatcherConfig& config) noexcept {
+  return config.keyframes && moves_frames(config);
 }
 
 bool scans(const MatcherConfig& config) noexcept {

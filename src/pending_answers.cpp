@@ -187,7 +187,7 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   constexpr double of_windows = 16.0;
   count_besides(trace, &BeliefTraces::Step::margin, of_windows, asked.margin);
   ask_steps(trace);
-  span_.ask(trace, asked.gain);
+  span_.ask(trace, asked.gain, static_cast<std::size_t>(newest + 1 - moved_from_));
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (jumps > 0.0) {

@@ -343,15 +343,16 @@ void PlaceBelief::weigh(const SceneView& view, const Scene& scene) noexcept {
   const PlaceOrder& order = view.map->order();
   const QueryHistory& queries = *view.queries;
   const std::size_t newest = queries.row_of(view.newest);
-  FramePair frames{queries.rows().close_sketch(newest), std::nullopt};
+  FramePair frames{queries.moved().close_sketch(newest), std::nullopt};
   if (view.newest >= view.oldest + frames_apart) {
     const std::size_t before = queries.row_of(view.newest - frames_apart);
-    frames.before = queries.rows().close_sketch(before);
+    frames.before = queries.moved().close_sketch(before);
     frames.way = squared_way(queries.rows(), newest, before, sketches_);
   }
   std::array<double, most> gains;
   std::array<double, most> without_bounds;
   const double w = scene.novelty;
+  newest_novelty_ = w;
   count_ = moved_count_;
   for (std::size_t i = 0; i < count_; ++i) {
     Hypothesis& at = next_[i];

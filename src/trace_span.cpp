@@ -86,10 +86,16 @@ TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double least) const noexcept {
+void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double least,
+                    std::size_t since_moved) const noexcept {
   constexpr double share = 0.7;
-  const double by_novelty = localises_ ? least : std::max(least, share * gain_by_novelty(trace));
-  for (BeliefTraces::Step& step : trace) step.asked = by_novelty * step.novelty;
+  const auto ask_of = [&](std::span<BeliefTraces::Step> steps) {
+    const double by_novelty = localises_ ? least : std::max(least, share * gain_by_novelty(steps));
+    for (BeliefTraces::Step& step : steps) step.asked = by_novelty * step.novelty;
+  };
+  const std::size_t since = std::min(since_moved, trace.size());
+  ask_of(trace.first(since));
+  ask_of(trace.subspan(since));
 }
 
 /// How much likelier a frame is where the trace was left than where it has not begun. Usual is what

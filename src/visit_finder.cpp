@@ -27,6 +27,7 @@ PlaceMap beside(const MatcherConfig& config, const PlaceMap& map, std::size_t pl
   PlaceMap own(config, {places, map.descriptor_size()});
   const RunningStatistics& known = map.statistics();
   static_cast<void>(own.set_statistics(known.mean(), known.variance(), known.frames()));
+  own.set_columns(map.columns());
   return own;
 }
 

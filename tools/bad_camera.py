@@ -136,9 +136,18 @@ def aside(shot: Shot) -> Picture:
     return shot.picture[:, np.clip(columns, 0, width - 1)]
 
 
+def lanes(shot: Shot) -> Picture:
+    """Looks to one side for 100 frames, then to the other, by six hundredths of its width."""
+    width = shot.picture.shape[1]
+    begins = int(shot.drive_dice().integers(0, 200))
+    side = 1 if (begins + shot.frame) // 100 % 2 else -1
+    columns = np.arange(width) + side * int(0.06 * width)
+    return shot.picture[:, np.clip(columns, 0, width - 1)]
+
+
 KINDS: dict[str, Callable[[Shot], Picture]] = {
     kind.__name__: kind
-    for kind in (aside, bumper, coarse, crowd, dirt, flicker, haze, lamp, noise, shake)}
+    for kind in (aside, bumper, coarse, crowd, dirt, flicker, haze, lamp, lanes, noise, shake)}
 
 
 def by_numbers(file: pathlib.Path) -> list:

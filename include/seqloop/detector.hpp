@@ -22,6 +22,7 @@
 #include "seqloop/detail/query_history.hpp"
 #include "seqloop/detail/running_statistics.hpp"
 #include "seqloop/detail/sequence_search.hpp"
+#include "seqloop/detail/sideways_shift.hpp"
 #include "seqloop/detail/stop_frames.hpp"
 #include "seqloop/detail/trajectories.hpp"
 #include "seqloop/frame_report.hpp"
@@ -187,6 +188,7 @@ class Detector {
   [[nodiscard]] std::uint64_t steps_of(std::uint64_t frames) noexcept;
   [[nodiscard]] bool may_be_hidden() const noexcept;
   void lose_sight(bool is_step) noexcept;
+  [[nodiscard]] std::size_t learn_shift() noexcept;
   [[nodiscard]] bool become_place() noexcept;
   void restart() noexcept;
   [[nodiscard]] std::size_t rows_searched(std::uint64_t centre) const noexcept;
@@ -205,6 +207,7 @@ class Detector {
   Trajectories trajectories_;
   RunningStatistics statistics_;
   QueryHistory queries_;
+  SidewaysShift shift_;
   DifferenceSlices slices_;
   SequenceSearch search_;
   CandidateRanges ranges_;

@@ -153,6 +153,10 @@ struct Capacity {
 /// Whether sequences are made of keyframes, in place of all frames.
 [[nodiscard]] bool has_keyframes(const MatcherConfig& config) noexcept;
 
+/// Whether frames are moved to the side where the robot drives beside its old track, if the map
+/// knows how descriptors are laid out (`PlaceMap::set_columns`; src/README.md, section 5.13).
+[[nodiscard]] bool moves_frames(const MatcherConfig& config) noexcept;
+
 /// The most descriptor distances that the candidates of one frame may cost where the detector
 /// relocalises: seven times what keeping up with one range takes, or 256 if that is more, unless
 /// the configuration says.

@@ -194,6 +194,19 @@ class PlaceMap {
 
   [[nodiscard]] FullMap full_map() const noexcept { return full_map_; }
 
+  /// The values of a descriptor stand in rows of so many, side by side across the picture, as those
+  /// of a network's last axis do. Detectors that are made from here on can tell then, and allow for
+  /// it, that the robot drives beside its old track, or that its camera has been turned
+  /// (src/README.md, section 5.13).
+  /// @param columns that the descriptor's size is a multiple of; 0: not known, as at first
+  /// @return false where it is not: then nothing has changed. Allocates: never.
+  bool set_columns(std::size_t columns) noexcept {
+    if (columns > 0 && descriptor_size() % columns != 0) return false;
+    columns_ = columns;
+    return true;
+  }
+  [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
+
   /// Whether its places are standardised. Those are not that `add` gave a map which was made for
   /// one drive that closes loops: only its detector standardises that.
   [[nodiscard]] bool standardises() const noexcept { return standardisation_.on && !holds_raw_; }
@@ -226,7 +239,8 @@ class PlaceMap {
   Standardisation standardisation_;
   bool holds_raw_ = false;  // places that nobody has standardised
   FullMap full_map_;
-  bool learning_ = false;  // the newest session, which has no place yet
+  std::size_t columns_ = 0;  // of a descriptor's values
+  bool learning_ = false;    // the newest session, which has no place yet
   RunningStatistics statistics_;
   RunningStatistics added_;  // of the places that are added, as a drive's
   bool has_keyframes_;

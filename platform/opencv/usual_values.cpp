@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "opencv/detail/oriented_gradients.hpp"
 #include "opencv/detail/usual_values.hpp"
 #include "seqloop/opencv/builtin_describer.hpp"
 
@@ -31,7 +32,8 @@ constexpr std::uint64_t many_frames = 1'000'000;
 
 bool expect_builtin(PlaceMap& map) noexcept {
   if (map.size() > 0 || map.statistics().frames() > 0) return false;
-  return map.set_statistics(usual.mean, usual.variance, many_frames);
+  return map.set_statistics(usual.mean, usual.variance, many_frames) &&
+         map.set_columns(OrientedGradients::grid_columns);
 }
 
 }  // namespace seqloop::opencv

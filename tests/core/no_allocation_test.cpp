@@ -6,6 +6,7 @@
 
 #include "core/allocation_guard.hpp"
 #include "core/matcher.hpp"
+#include "core/panorama.hpp"
 #include "core/ways.hpp"
 #include "seqloop/principal_components.hpp"
 #include "seqloop/visit_finder.hpp"
@@ -52,6 +53,20 @@ TEST_F(NoAllocation, WhereNotEachFrameIsAKeyframe) {
   EXPECT_EQ(guard.count(), 0U);
   EXPECT_EQ(answers, slow.size());
   EXPECT_LT(map.size(), slow.size() / 2);
+}
+
+TEST_F(NoAllocation, WhereFramesAreMovedToTheSide) {
+  const test::Panorama panorama(1, 200);
+  const MatcherConfig config;
+  PlaceMap map = map_of(panorama.seen(7, 0.5F, 1), config);
+  ASSERT_TRUE(map.set_columns(test::Panorama::columns));
+  const oracle::Vectors drive = panorama.seen(9, 0.5F, 2);
+  Detector detector(config, map);
+  std::size_t answers = 0;
+  const AllocationGuard guard;
+  for (const auto& descriptor : drive) answers += matches(detector.step(descriptor));
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_GT(answers, 0U);
 }
 
 TEST_F(NoAllocation, WherePlacesOfOthersAreTakenIn) {

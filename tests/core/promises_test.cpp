@@ -101,8 +101,10 @@ struct Heard {
 
 /// A map, and a detector in memory that held something else before.
 struct Setup {
-  Setup(const MatcherConfig& config, const Capacity& room, const oracle::Vectors& earlier)
+  Setup(const MatcherConfig& config, const Capacity& room, const oracle::Vectors& earlier,
+        std::size_t columns)
       : map(config, room), memory(Detector::bytes_needed(config, room), {}) {
+    EXPECT_TRUE(map.set_columns(columns));
     fill(map, earlier);
     std::memset(memory.span().data(), 0xCD, memory.span().size());
     detector.emplace(config, map, memory.span());
@@ -131,8 +133,9 @@ std::size_t play(std::uint32_t seed) {
   const Capacity room{std::max(least_places(config), known) + chance.between(0, 60), size, 2};
   const oracle::Vectors earlier = knows ? test::way(seed, known, 0.3F, 1, size) : oracle::Vectors{};
   const oracle::Vectors way = test::way(seed, known, 0.3F, 2, size);
-  Setup one(config, room, earlier);
-  Setup twin(config, room, earlier);
+  const auto columns = chance.one_of<std::size_t>({0, 1, 4, size});
+  Setup one(config, room, earlier, columns);
+  Setup twin(config, room, earlier, columns);
   const Work most = Detector::most_work(config, room);
   Heard heard{config, one.map};
   std::vector<FrameReport> reports(config.frames_at_once);

@@ -45,5 +45,32 @@ TEST_F(Queries, AFrameWithoutADescriptorRepeatsTheOneBefore) {
   }
 }
 
+TEST(MovedQueries, AreComparedByWhatTheyWereMovedTo) {
+  TestArena memory;
+  const DescriptorForm form(paper(Candidates::all, 2), size);
+  const auto in = [](const DescriptorRows& rows, std::size_t row) {
+    std::vector<float> out(rows.restored_size());
+    rows.restore(row, out);
+    out.resize(size);
+    return out;
+  };
+  const std::vector<float> as_it_came{1.0F, 2.0F, 3.0F};
+  const std::vector<float> moved{2.0F, 3.0F, 3.0F};
+  QueryHistory queries(memory.arena, form, kept, true);
+  for (std::uint64_t frame = 0; frame < 3 * kept; ++frame) {
+    const bool moves = frame % 3 != 0;
+    queries.push(as_it_came, moves ? moved : as_it_came);
+    queries.push_again();
+    for (const std::uint64_t at : {queries.newest() - 1, queries.newest()}) {
+      EXPECT_EQ(in(queries.rows(), queries.row_of(at)), as_it_came);
+      EXPECT_EQ(in(queries.moved(), queries.row_of(at)), moves ? moved : as_it_came);
+    }
+  }
+  QueryHistory never(memory.arena, form, kept);
+  never.push(as_it_came, moved);
+  EXPECT_EQ(&never.moved(), &never.rows());
+  EXPECT_EQ(in(never.moved(), never.row_of(0)), as_it_came);
+}
+
 }  // namespace
 }  // namespace seqloop

@@ -124,6 +124,7 @@ TEST(ExpectBuiltin, TellsAnEmptyMapWhatValuesUsuallyAre) {
   const MatcherConfig config{.use = Use::close_loops};
   PlaceMap map(config, {10, values});
   ASSERT_TRUE(expect_builtin(map));
+  EXPECT_EQ(map.columns(), 7U);
   const RunningStatistics& usual = map.statistics();
   double squares = 0.0;
   for (std::size_t d = 0; d < values; ++d) {
@@ -147,6 +148,7 @@ TEST(ExpectBuiltin, LeavesOtherMapsAlone) {
   const MatcherConfig config;
   PlaceMap of_another_size(config, {10, values + 1});
   EXPECT_FALSE(expect_builtin(of_another_size));
+  EXPECT_EQ(of_another_size.columns(), 0U);
   EXPECT_EQ(of_another_size.statistics().frames(), 0U);
 
   MatcherConfig as_they_come;

@@ -103,7 +103,13 @@ class DescriptorRows {
                std::span<const std::span<std::uint16_t>> out) const noexcept;
 
   /// The difference of two, 0 .. 2 between unit vectors.
-  [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] double between(std::size_t a, std::size_t b) const noexcept {
+    return difference(*this, a, b);
+  }
+
+  /// The same of a query and a row.
+  [[nodiscard]] double difference(const DescriptorRows& queries, std::size_t query,
+                                  std::size_t row) const noexcept;
 
   /// Differing bits of the scanned words of one sketch and consecutive ones.
   /// @param out [count] 0 .. 64 scanned_words. Work: count * scanned_words.

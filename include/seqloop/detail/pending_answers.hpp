@@ -58,6 +58,9 @@ class PendingAnswers {
   /// What sequence search found for a frame, best first; at most `lines_kept`.
   void found(std::uint64_t frame, std::span<const FoundLine> lines) noexcept;
 
+  /// Frames from this one on are moved to the side by another measure than those before it.
+  void move_from(std::uint64_t frame) noexcept { moved_from_ = frame; }
+
   /// Takes in what is believed at the newest frame.
   /// @param oldest frame that belongs together with it
   /// @return pairs of sketches compared
@@ -209,8 +212,9 @@ class PendingAnswers {
   bool grows_;
   double least_;
   double least_before_calibration_;
-  std::uint64_t first_ = 0;  // frame that may still wait
-  std::uint64_t end_ = 0;    // after the newest
+  std::uint64_t moved_from_ = 0;  // frame
+  std::uint64_t first_ = 0;       // frame that may still wait
+  std::uint64_t end_ = 0;         // after the newest
   std::size_t given_ = 0;
   std::optional<Evidence> evidence_;
   std::span<Waiting> waiting_;           // [depth + ds + 1 or more], a ring by frame

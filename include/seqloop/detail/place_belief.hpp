@@ -116,6 +116,9 @@ class PlaceBelief {
   /// What the best wrong rows gain, by novelty; 0 or more.
   [[nodiscard]] double usual_gain() const noexcept;
 
+  /// The newest frame's novelty, 0 .. 1; 0 where nothing is believed.
+  [[nodiscard]] double newest_novelty() const noexcept { return newest_novelty_; }
+
   /// The novelty that a frame of this drive has, 0 .. 1.
   [[nodiscard]] double usual_novelty() const noexcept { return wrong_.novelty(); }
 
@@ -192,6 +195,7 @@ class PlaceBelief {
   double new_place_ = 1.0;
   WrongRows wrong_;  // what the best wrong rows gain
   std::size_t count_ = 0;
+  double newest_novelty_ = 0.0;
   std::size_t moved_count_ = 0;
   Ended ended_;
   std::optional<Likeliest> likeliest_;

@@ -10,22 +10,37 @@
 
 namespace seqloop {
 
-/// The newest query descriptors, a ring: what differences, scans of the map and the change degree
-/// are computed from, and what becomes a place.
+/// The newest query descriptors, a ring: what the change degree is computed from, and what becomes
+/// a place; and what they are compared with the map's places by, which is not the same where
+/// frames are moved to the side.
 class QueryHistory {
  public:
-  /// @param kept frames whose descriptors are kept, at least 1
+  /// @param kept  frames whose descriptors are kept, at least 1
+  /// @param moves whether frames may be compared with places by other descriptors than their own
   /// Allocates: from the arena only.
-  QueryHistory(Arena& arena, const DescriptorForm& form, std::size_t kept)
+  QueryHistory(Arena& arena, const DescriptorForm& form, std::size_t kept, bool moves = false)
       : kept_(kept),
         rows_(arena, {"query descriptors", "lengths of query descriptors", "query sketches"}, form,
-              kept) {}
+              kept),
+        moved_(arena, {"moved descriptors", "lengths of moved descriptors", "moved sketches"}, form,
+               moves ? kept : 0),
+        moves_(moves) {}
 
   /// Takes the next frame's descriptor, forgetting the oldest.
   /// @param descriptor [D] finite. Work: D. Allocates: never.
   void push(std::span<const float> descriptor) noexcept {
     begin_next();
     rows_.store(newest_row_, descriptor);
+    if (moves_) moved_.copy(newest_row_, rows_, newest_row_);
+  }
+
+  /// The same, where it may be moved. @param moved [D] finite: what it is compared with places by;
+  /// the same memory where it is not moved
+  void push(std::span<const float> descriptor, std::span<const float> moved) noexcept {
+    if (!moves_ || moved.data() == descriptor.data()) return push(descriptor);
+    begin_next();
+    rows_.store(newest_row_, descriptor);
+    moved_.store(newest_row_, moved);
   }
 
   /// Takes another frame with the newest one's descriptor, or with none, all zero, if it is the
@@ -33,7 +48,9 @@ class QueryHistory {
   void push_again() noexcept {
     const std::size_t before = newest_row_;
     begin_next();
-    if (frames_ > 1) rows_.copy(newest_row_, rows_, before);
+    if (frames_ == 1) return;
+    rows_.copy(newest_row_, rows_, before);
+    if (moves_) moved_.copy(newest_row_, moved_, before);
   }
 
   /// Frames pushed so far.
@@ -44,6 +61,10 @@ class QueryHistory {
 
   /// The descriptors that are kept; the row of a frame that is among them is `row_of(frame)`.
   [[nodiscard]] const DescriptorRows& rows() const noexcept { return rows_; }
+
+  /// What they are compared with places by, in the same rows.
+  [[nodiscard]] const DescriptorRows& moved() const noexcept { return moves_ ? moved_ : rows_; }
+
   [[nodiscard]] std::size_t row_of(std::uint64_t frame) const noexcept {
     // The ring is gone round by hand: a step asks for this a thousand times, and division is slow.
     const auto back = static_cast<std::size_t>(newest() - frame);
@@ -64,7 +85,9 @@ class QueryHistory {
   std::size_t kept_;
   std::uint64_t frames_ = 0;
   std::size_t newest_row_ = 0;
-  DescriptorRows rows_;  // [kept]
+  DescriptorRows rows_;   // [kept]
+  DescriptorRows moved_;  // [kept], or none
+  bool moves_;
 };
 
 }  // namespace seqloop

@@ -16,6 +16,7 @@ class OrientedGradients {
   static constexpr int width = 128;  // pixels
   static constexpr int height = 64;
   static constexpr std::size_t size = 735;  // orientation x row x column, 15 x 7 x 7
+  static constexpr std::size_t grid_columns = 7;
 
   OrientedGradients() noexcept;
 
@@ -28,7 +29,7 @@ class OrientedGradients {
   static constexpr int tensor_rows = 30;
   static constexpr int tensor_columns = 62;
   static constexpr int orientations = 15;
-  static constexpr int cells = 7;  // in a row and in a column
+  static constexpr int cells = grid_columns;  // in a row and in a column
 
   /// A value of each orientation, and one of padding.
   using Orientations = std::array<float, orientations + 1>;

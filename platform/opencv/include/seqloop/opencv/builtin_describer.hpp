@@ -21,7 +21,7 @@ namespace seqloop::opencv {
 
 /// Tells a map what values of the built-in descriptor usually are, so that a first drive that
 /// closes loops in it starts from that, and not from its first frame alone (src/README.md,
-/// section 5.1).
+/// section 5.1), and in how many columns they stand (section 5.13).
 /// @return false for a map that has places or statistics already, whose descriptors are of another
 ///   size, or that does not standardise: then nothing has changed
 /// Work: 735 values. Allocates: never.

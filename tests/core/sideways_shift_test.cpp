@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// How far to the side frames are moved: beside its definition, learnt from what places show, and
+// what it is good for.
+#include "seqloop/detail/sideways_shift.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/matcher.hpp"
+#include "core/panorama.hpp"
+
+namespace seqloop {
+namespace {
+
+using test::Panorama;
+
+constexpr std::size_t columns = Panorama::columns;
+constexpr std::size_t size = Panorama::size;
+constexpr int most = 6;  // halves
+
+/// A descriptor moved as the header says, in double.
+std::vector<float> moved(const std::vector<float>& descriptor, int halves) {
+  std::vector<double> out(descriptor.size());
+  double squares = 0.0;
+  for (std::size_t d = 0; d < out.size(); ++d) {
+    const auto column = static_cast<double>(d % columns) + halves / 2.0;
+    const auto at = [&](double c) {
+      const auto inside = static_cast<std::size_t>(std::clamp(c, 0.0, double{columns - 1}));
+      return static_cast<double>(descriptor[d - d % columns + inside]);
+    };
+    out[d] = (at(std::floor(column)) + at(std::ceil(column))) / 2.0;
+    squares += out[d] * out[d];
+  }
+  std::vector<float> unit;
+  for (const double value : out) {
+    unit.push_back(static_cast<float>(squares > 0.0 ? value / std::sqrt(squares) : 0.0));
+  }
+  return unit;
+}
+
+MatcherConfig in(Arithmetic arithmetic) {
+  MatcherConfig config;
+  config.arithmetic = arithmetic;
+  return config;
+}
+
+/// Places that are compared with, and what learns from them.
+class Learner {
+ public:
+  explicit Learner(Arithmetic arithmetic)
+      : form_(in(arithmetic), size),
+        places_(memory_.arena, {"places", "lengths", "sketches"}, form_, 1),
+        queries_(memory_.arena, form_, 2, true),
+        shift(memory_.arena, form_, true) {
+    shift.stand_in(columns);
+  }
+
+  std::size_t learn(const std::vector<float>& frame, const std::vector<float>& place,
+                    double novelty = 0.5) {
+    places_.store(0, place);
+    queries_.push(frame, shift.moved(frame));
+    return shift.learn(queries_, frame, places_, 0, novelty);
+  }
+
+ private:
+  TestArena memory_;
+  DescriptorForm form_;
+  DescriptorRows places_;
+  QueryHistory queries_;
+
+ public:
+  SidewaysShift shift;
+};
+
+class Shifts : public testing::TestWithParam<Arithmetic> {};
+
+TEST_P(Shifts, AreFoundAndUndoneByTheirDefinition) {
+  const oracle::Vectors frames = Panorama(1, 200).seen(columns, 0.0F, 1);
+  for (int halves = -most; halves <= most; ++halves) {
+    Learner learner(GetParam());
+    for (const auto& frame : frames) {
+      const std::size_t computed = learner.learn(frame, moved(frame, halves));
+      EXPECT_GE(computed, 2U);
+      EXPECT_LE(computed, SidewaysShift::distances);
+    }
+    EXPECT_EQ(learner.shift.halves(), halves);
+    const std::span<const float> undone = learner.shift.moved(frames[5]);
+    const std::vector<float> wanted = moved(frames[5], halves);
+    for (std::size_t d = 0; d < size; ++d) ASSERT_NEAR(undone[d], wanted[d], 1e-6F) << d;
+  }
+}
+
+TEST_P(Shifts, StayAtNoneWhereNothingIsMoved) {
+  const Panorama panorama(2, 400);
+  const oracle::Vectors frames = panorama.seen(columns, 1.0F, 1);
+  const oracle::Vectors places = panorama.seen(columns, 1.0F, 2);
+  Learner learner(GetParam());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    static_cast<void>(learner.learn(frames[i], places[i]));
+    ASSERT_EQ(learner.shift.halves(), 0) << i;
+  }
+  EXPECT_EQ(learner.shift.moved(frames[0]).data(), frames[0].data()) << "nothing is copied";
+}
+
+TEST_P(Shifts, FollowARobotBackToItsOldTrack) {
+  const oracle::Vectors frames = Panorama(3, 300).seen(columns, 0.0F, 1);
+  Learner learner(GetParam());
+  for (const auto& frame : frames) static_cast<void>(learner.learn(frame, moved(frame, 4)));
+  ASSERT_EQ(learner.shift.halves(), 4);
+  for (const auto& frame : frames) static_cast<void>(learner.learn(frame, frame));
+  EXPECT_EQ(learner.shift.halves(), 0);
+  for (const auto& frame : frames) static_cast<void>(learner.learn(frame, moved(frame, -4)));
+  EXPECT_EQ(learner.shift.halves(), -4);
+  learner.shift.begin();
+  EXPECT_EQ(learner.shift.halves(), 0);
+}
+
+TEST_P(Shifts, LearnNothingFromFramesThatShowNothingNewOrNothing) {
+  const oracle::Vectors frames = Panorama(4, 100).seen(columns, 0.0F, 1);
+  const std::vector<float> nothing(size, 0.0F);
+  Learner learner(GetParam());
+  for (const auto& frame : frames) {
+    static_cast<void>(learner.learn(frame, moved(frame, 3), 0.0));
+    static_cast<void>(learner.learn(nothing, frame));
+    static_cast<void>(learner.learn(nothing, nothing));
+    ASSERT_EQ(learner.shift.halves(), 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arithmetic, Shifts,
+                         testing::Values(Arithmetic::float32, Arithmetic::int8,
+                                         Arithmetic::sketch));
+
+TEST(SidewaysShift, IsNoneWhereColumnsAreNotKnown) {
+  const oracle::Vectors frames = Panorama(5, 50).seen(columns, 0.0F, 1);
+  TestArena memory;
+  const DescriptorForm form(in(Arithmetic::int8), size);
+  DescriptorRows places(memory.arena, {"places", "lengths", "sketches"}, form, 1);
+  QueryHistory queries(memory.arena, form, 2, true);
+  for (const bool on : {false, true}) {
+    for (const std::size_t known : {std::size_t{0}, std::size_t{1}, columns}) {
+      if (on && known == columns) continue;
+      SidewaysShift shift(memory.arena, form, on);
+      shift.stand_in(known);
+      for (const auto& frame : frames) {
+        places.store(0, moved(frame, 2));
+        queries.push(frame);
+        EXPECT_EQ(shift.learn(queries, frame, places, 0, 0.5), 0U);
+        EXPECT_EQ(shift.moved(frame).data(), frame.data());
+      }
+    }
+  }
+}
+
+/// What is accepted of a drive that sees what the map's saw, moved to the side.
+struct Found {
+  std::size_t right = 0;
+  std::size_t wrong = 0;
+};
+
+Found found(Arithmetic arithmetic, std::size_t known_columns, std::size_t aside, Use use) {
+  constexpr std::size_t places = 300;
+  const Panorama panorama(6, places);
+  MatcherConfig config = in(arithmetic);
+  config.use = use;
+  const bool loops = use == Use::close_loops;
+  oracle::Vectors drive = panorama.seen(columns, 1.2F, 1);
+  PlaceMap map(config, {loops ? 2 * places : places, size});
+  EXPECT_TRUE(map.set_columns(known_columns));
+  if (!loops) fill(map, drive);
+  const oracle::Vectors back = panorama.seen(columns + aside, 1.2F, 2);
+  if (!loops) drive.clear();
+  const std::size_t first = drive.size();
+  drive.insert(drive.end(), back.begin(), back.end());
+
+  Detector detector(config, map);
+  const Work most_work = Detector::most_work(config, {map.capacity(), size});
+  Found found;
+  const auto take = [&](std::span<const Answer> answers) {
+    for (const Answer& answer : answers) {
+      if (answer.gate != Gate::match) continue;
+      const bool right = answer.frame >= first && answer.match->place + 2 + first >= answer.frame &&
+                         answer.match->place + first <= answer.frame + 2;
+      ++(right ? found.right : found.wrong);
+    }
+  };
+  for (const auto& frame : drive) {
+    const FrameReport report = detector.step(frame);
+    EXPECT_LE(report.work.distances, most_work.distances);
+    take(report.answers);
+  }
+  take(detector.finish());
+  return found;
+}
+
+TEST_P(Shifts, LetARobotBesideItsOldTrackBeFound) {
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    const Found without = found(GetParam(), 0, 2, use);
+    const Found with = found(GetParam(), columns, 2, use);
+    EXPECT_LT(without.right, 50U) << "or this shows nothing";
+    EXPECT_GE(with.right, 270U);
+    EXPECT_EQ(with.wrong, 0U);
+  }
+}
+
+TEST_P(Shifts, ChangeNothingWhereNothingIsMoved) {
+  for (const Use use : {Use::localise, Use::close_loops}) {
+    const Found with = found(GetParam(), columns, 0, use);
+    EXPECT_GE(with.right, 280U);
+    EXPECT_EQ(with.wrong, 0U);
+  }
+}
+
+TEST(PlaceMap, TakesColumnsThatItsDescriptorsCanStandIn) {
+  PlaceMap map({}, {10, 12});
+  EXPECT_EQ(map.columns(), 0U);
+  EXPECT_TRUE(map.set_columns(4));
+  EXPECT_FALSE(map.set_columns(5));
+  EXPECT_FALSE(map.set_columns(24));
+  EXPECT_EQ(map.columns(), 4U) << "as it was";
+  EXPECT_TRUE(map.set_columns(0));
+  EXPECT_EQ(map.columns(), 0U);
+}
+
+}  // namespace
+}  // namespace seqloop
