@@ -11,6 +11,7 @@
 #include "seqloop/detail/detector_faults.hpp"
 #include "seqloop/detail/evidence.hpp"
 #include "seqloop/detail/lowest_lines.hpp"
+#include "seqloop/detail/portable_math.hpp"
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/detail/stop_run.hpp"
 #include "seqloop/difference.hpp"
@@ -294,7 +295,7 @@ std::size_t Detector::steps(std::span<const std::span<const float>> descriptors,
 /// Answers the frames whose answer is due once the newest has been taken.
 FrameReport Detector::answer(std::uint64_t newest, bool readable) noexcept {
   if (config_.decision == Decision::probability) {
-    pending_.add(newest, readable);
+    pending_.add(newest, readable, shift_.halves());
     FrameReport report = match_centre(newest, readable);
     report_due(report, readable);
     return report;
@@ -314,6 +315,7 @@ void Detector::report_due(FrameReport& report, bool readable) noexcept {
   const std::size_t before = pending_.answers().size();
   if (readable) {
     report.work.sketches += pending_.believe(belief_, *map_, report.newest, window_began_);
+    report.work.distances += learn_shift();
   }
   pending_.answer(*map_, steps_, steps_.frame_of(report.newest), window_began_);
   report.answers = pending_.answers().subspan(before);
@@ -376,7 +378,6 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
       report.work.sketches +=
           belief_.observe({&queries_, map_, &proposals_, newest, window_began_, rows},
                           pending_.chance_of_return(newest));
-      report.work.distances += learn_shift();
     } else {
       lose_sight(true);
     }
@@ -416,17 +417,22 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   return report;
 }
 
-/// Where the robot is believed to be, the newest frame tells how far to the side it drives.
+/// Where the robot is believed to be, the newest frame tells how far to the side it drives. Where
+/// it was found lately that is known, and a place that it is less sure of may be another one that
+/// looks like it from elsewhere.
 /// @return distances that were computed
 std::size_t Detector::learn_shift() noexcept {
+  constexpr double sure = 2.0;
   const auto& likeliest = belief_.likeliest();
-  if (!likeliest || belief_.new_place() >= 0.5) return 0;
-  const int before = shift_.halves();
-  const std::size_t distances =
-      shift_.learn(queries_, standardised_, map_->rows(), map_->order().slot(likeliest->row),
-                   belief_.newest_novelty());
-  if (shift_.halves() != before) pending_.move_from(queries_.frames());
-  return distances;
+  if (!likeliest || belief_.new_place() >= 0.5) {
+    shift_.learn_nothing();
+    return 0;
+  }
+  const Evidence& evidence = *pending_.evidence();
+  const bool is_sure = log_odds(evidence) - evidence.asked >= sure;
+  if (!is_sure && pending_.found_lately(queries_.newest()) > 0.0) return 0;
+  return shift_.learn(queries_, standardised_, *map_, likeliest->row,
+                      belief_.newest_novelty() * logistic(evidence.odds));
 }
 
 /// How many steps so many frames are that nothing is seen of.

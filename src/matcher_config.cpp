@@ -80,13 +80,14 @@ bool relocalises(const MatcherConfig& config) noexcept {
   return config.relocalising.on && config.candidates != Candidates::all;
 }
 
-bool moves_frames(const MatcherConfig& config) noexcept {
-  return relocalises(config) && config.decision == Decision::probability &&
+bool has_keyframes(const MatcherConfig& config) noexcept {
+  return config.keyframes && relocalises(config) && config.decision == Decision::probability &&
          config.standardisation.on;
 }
 
-bool has_keyframes(const MatcherConfig& config) noexcept {
-  return config.keyframes && moves_frames(config);
+bool moves_frames(const MatcherConfig& config) noexcept {
+  return relocalises(config) && config.decision == Decision::probability &&
+         config.standardisation.on && config.difference == Difference::euclidean;
 }
 
 bool scans(const MatcherConfig& config) noexcept {

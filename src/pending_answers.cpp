@@ -78,10 +78,10 @@ bool PendingAnswers::accept_from(float least) noexcept {
   return true;
 }
 
-void PendingAnswers::add(std::uint64_t frame, bool readable) noexcept {
+void PendingAnswers::add(std::uint64_t frame, bool readable, int moved) noexcept {
   forget_evidence();
-  at(frame) = {frame, true, readable, false, false, 0,     0.0, 0.0, {0.0, 0.0}, {0.0, 0.0},
-               0,     1.0,  none,     0.0,   false, false, 0.0, 0.0, 0,          {}};
+  at(frame) = {frame, true, readable, moved, false, false, 0,   0.0, 0.0, {0.0, 0.0}, {0.0, 0.0},
+               0,     1.0,  none,     0.0,   false, false, 0.0, 0.0, 0,   {}};
   end_ = frame + 1;
 }
 
@@ -187,7 +187,8 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
   constexpr double of_windows = 16.0;
   count_besides(trace, &BeliefTraces::Step::margin, of_windows, asked.margin);
   ask_steps(trace);
-  span_.ask(trace, asked.gain, static_cast<std::size_t>(newest + 1 - moved_from_));
+  note_moves(newest, trace);
+  span_.ask(trace, asked.gain);
   const double was_on = known ? before.right * before.on.still : 0.0;
   std::span<const TraceSpan::On> carried;
   if (jumps > 0.0) {
@@ -202,6 +203,18 @@ std::size_t PendingAnswers::believe(PlaceBelief& belief, const PlaceMap& map, st
               {right, same_place, on[back], carried.empty() ? on[back] : carried[back], back});
   }
   return sketches;
+}
+
+/// By how much the frames of a trace were moved to the side; those that are not known as those
+/// after them.
+void PendingAnswers::note_moves(std::uint64_t newest,
+                                std::span<BeliefTraces::Step> trace) noexcept {
+  int moved = 0;
+  for (std::size_t back = 0; back < trace.size(); ++back) {
+    const Waiting& then = at(newest - back);
+    if (then.frame == newest - back) moved = then.moved;
+    trace[back].moved = moved;
+  }
 }
 
 /// Whether the belief of the time was elsewhere than on a trace, or somewhere new.

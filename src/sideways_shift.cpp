@@ -2,7 +2,6 @@
 #include "seqloop/detail/sideways_shift.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/difference.hpp"
@@ -38,21 +37,32 @@ void SidewaysShift::stand_in(std::size_t columns) noexcept {
 }
 
 std::size_t SidewaysShift::learn(const QueryHistory& queries, std::span<const float> descriptor,
-                                 const DescriptorRows& places, std::size_t slot,
-                                 double novelty) noexcept {
+                                 const PlaceMap& map, std::size_t row, double news) noexcept {
   if (most_ == 0) return 0;
+  lost_ = 0;
+  std::size_t computed = 0;
+  const auto like = [&](const DescriptorRows& frames, std::size_t frame, std::size_t at) {
+    ++computed;
+    return likeness(frames, frame, map.rows(), map.order().slot(at));
+  };
+  const std::size_t newest = queries.row_of(queries.newest());
+  const double here = like(queries.moved(), newest, row);
+  constexpr double clearly = 0.05;
+  const CandidateRun session = map.order().around(row);
+  const std::size_t first = std::max(session.first + rows_beside, row) - rows_beside;
+  for (std::size_t at = first; at < std::min(session.last, row + rows_beside + 1); ++at) {
+    if (at != row && like(queries.moved(), newest, at) > here + clearly) return computed;
+  }
+
   // To begin with, as if that much had been seen of which neither side is any better.
   constexpr double nothing_seen = 5.0;
   constexpr double memory = 40.0;
-  seen_ = std::min(seen_ + novelty, memory);
-  const double weight = novelty / (nothing_seen + seen_);
-  const double here = likeness(queries.moved(), queries.row_of(queries.newest()), places, slot);
-  std::size_t computed = 1;
+  seen_ = std::min(seen_ + news, memory);
+  const double weight = news / (nothing_seen + seen_);
   const auto learn_side = [&](double& mean, int halves) {
     if (halves > most_ || halves < -most_) return;
     frame_.store(0, halves == 0 ? descriptor : moved_by(descriptor, halves));
-    mean += weight * (likeness(frame_, 0, places, slot) - here - mean);
-    ++computed;
+    mean += weight * (like(frame_, 0, row) - here - mean);
   };
   learn_side(more_, now_ + 1);
   learn_side(less_, now_ - 1);

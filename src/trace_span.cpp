@@ -86,16 +86,16 @@ TraceSpan::TraceSpan(Arena& arena, Use use, std::size_t most)
       forward_(arena.take<Forward>("where a trace may begin and end", most)),
       on_(arena.take<On>("frames on a trace", most)) {}
 
-void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double least,
-                    std::size_t since_moved) const noexcept {
+void TraceSpan::ask(std::span<BeliefTraces::Step> trace, double least) const noexcept {
   constexpr double share = 0.7;
-  const auto ask_of = [&](std::span<BeliefTraces::Step> steps) {
-    const double by_novelty = localises_ ? least : std::max(least, share * gain_by_novelty(steps));
-    for (BeliefTraces::Step& step : steps) step.asked = by_novelty * step.novelty;
-  };
-  const std::size_t since = std::min(since_moved, trace.size());
-  ask_of(trace.first(since));
-  ask_of(trace.subspan(since));
+  for (auto left = trace; !left.empty();) {
+    const auto end = std::ranges::find_if(
+        left, [&](const BeliefTraces::Step& step) { return step.moved != left.front().moved; });
+    const auto alike = left.first(static_cast<std::size_t>(end - left.begin()));
+    left = left.subspan(alike.size());
+    const double by_novelty = localises_ ? least : std::max(least, share * gain_by_novelty(alike));
+    for (BeliefTraces::Step& step : alike) step.asked = by_novelty * step.novelty;
+  }
 }
 
 /// How much likelier a frame is where the trace was left than where it has not begun. Usual is what

@@ -249,30 +249,24 @@ TEST(TraceSpan, NoTraceIsTooLong) {
 
 TEST(TraceSpan, FramesThatWereMovedAlikeHaveAnAverageOfTheirOwn) {
   TestArena memory;
-  const TraceSpan loops(memory.arena, Use::close_loops, 10);
-  const TraceSpan localises(memory.arena, Use::localise, 10);
-  // The newest five gain four by novelty, those before them .4.
+  const TraceSpan loops(memory.arena, Use::close_loops, 9);
+  const TraceSpan localises(memory.arena, Use::localise, 9);
+  // Three times three frames, which gain 4, 2 and .4 by novelty.
   std::vector<BeliefTraces::Step> trace;
-  for (std::size_t i = 0; i < 10; ++i) trace.push_back({i, i < 5 ? 2.0 : 0.2, 0.5, 0.5});
-  const auto asked = [&](const TraceSpan& span, double least, auto... since_moved) {
-    span.ask(trace, least, since_moved...);
-    return std::pair(trace[4].asked, trace[5].asked);
+  for (std::size_t i = 0; i < 9; ++i) {
+    trace.push_back({i, i < 3 ? 2.0 : i < 6 ? 1.0 : 0.2, 0.5, 0.5});
+  }
+  const auto expect_asked = [&](const TraceSpan& span, double least, std::array<double, 3> asked) {
+    span.ask(trace, least);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(trace[i].asked, asked[i / 3], 1e-12) << i;
   };
-  constexpr std::size_t five = 5;
-  const auto [newer, older] = asked(loops, 0.1, five);
-  EXPECT_DOUBLE_EQ(newer, 0.7 * 4.0 * 0.5);
-  EXPECT_DOUBLE_EQ(older, 0.7 * 0.4 * 0.5);
-  EXPECT_DOUBLE_EQ(asked(loops, 0.5, five).second, 0.5 * 0.5) << "no less than is asked at least";
-  const std::pair all(0.7 * 2.2 * 0.5, 0.7 * 2.2 * 0.5);
-  const auto near = [](std::pair<double, double> a, std::pair<double, double> b) {
-    EXPECT_NEAR(a.first, b.first, 1e-12);
-    EXPECT_NEAR(a.second, b.second, 1e-12);
-  };
-  near(asked(loops, 0.1), all);
-  near(asked(loops, 0.1, std::size_t{0}), all);
-  near(asked(loops, 0.1, std::size_t{10}), all);
-  near(asked(loops, 0.1, std::size_t{1'000}), all);
-  near(asked(localises, 0.1, five), {0.05, 0.05});
+  constexpr double share = 0.7 * 0.5;
+  constexpr double all = share * 6.4 / 3.0;
+  expect_asked(loops, 0.1, {all, all, all});
+  for (std::size_t i = 0; i < 9; ++i) trace[i].moved = i < 3 ? -2 : i < 6 ? -1 : -2;
+  expect_asked(loops, 0.1, {share * 4.0, share * 2.0, share * 0.4});
+  expect_asked(loops, 0.5, {share * 4.0, share * 2.0, 0.25});
+  expect_asked(localises, 0.1, {0.05, 0.05, 0.05});
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <set>
 
 #include "core/oracle.hpp"
+#include "core/panorama.hpp"
 #include "program/fleet/through_own.hpp"
 
 namespace seqloop::program {
@@ -194,6 +196,35 @@ TEST(OthersMap, SixRobotsThatSetOffAtOnceFindWhatOneProcessFinds) {
     EXPECT_GE(found, possible - possible / 100);
     EXPECT_LE(wrong, accepted / 100);
   }
+}
+
+// What the run's own map knows of columns goes for others' places, too.
+TEST(OthersMap, FindsARobotThatDrivesBesideAnothersTrack) {
+  using test::Panorama;
+  constexpr std::size_t frames = 300;
+  const Panorama panorama(6, frames);
+  MatcherConfig config;
+  const auto found = [&](std::size_t columns) {
+    PlaceMap places(config, {frames, Panorama::size});
+    for (const auto& seen : panorama.seen(7, 1.2F, 1)) EXPECT_TRUE(places.add(seen));
+    PlaceMap own(config, {frames, Panorama::size});
+    EXPECT_TRUE(own.set_columns(columns));
+    OthersMap others(config, frames, 2, own);
+    std::vector<std::byte> bytes(places.rows().saved_size());
+    for (std::size_t row = 0; row < frames; ++row) {
+      places.rows().save(places.order().slot(row), bytes);
+      EXPECT_TRUE(others.take_in({1, row}, bytes));
+    }
+    std::size_t matches = 0;
+    const auto count = [&](std::span<const Answer> answers) {
+      matches += static_cast<std::size_t>(std::ranges::count(answers, Gate::match, &Answer::gate));
+    };
+    for (const auto& seen : panorama.seen(9, 1.2F, 2)) count(others.step(seen, 0).answers);
+    count(others.finish());
+    return matches;
+  };
+  EXPECT_LT(found(0), 50U);
+  EXPECT_GT(found(Panorama::columns), 250U);
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ class BeliefTraces {
     /// Its window's margin there; NaN: no line was found.
     double margin = std::numeric_limits<double>::quiet_NaN();
     double besides = 0.0;  ///< what that and `in_step` say for the trace besides the gain
+    int moved = 0;         ///< to the side, the frame
   };
 
   /// Begins the next frame; `set` fills it in.

@@ -53,13 +53,11 @@ class PendingAnswers {
   void forget_evidence() noexcept { evidence_.reset(); }
 
   /// Another frame waits. @param readable whether it could be read
-  void add(std::uint64_t frame, bool readable) noexcept;
+  /// @param moved to the side, as `SidewaysShift` says
+  void add(std::uint64_t frame, bool readable, int moved = 0) noexcept;
 
   /// What sequence search found for a frame, best first; at most `lines_kept`.
   void found(std::uint64_t frame, std::span<const FoundLine> lines) noexcept;
-
-  /// Frames from this one on are moved to the side by another measure than those before it.
-  void move_from(std::uint64_t frame) noexcept { moved_from_ = frame; }
 
   /// Takes in what is believed at the newest frame.
   /// @param oldest frame that belongs together with it
@@ -143,6 +141,7 @@ class PendingAnswers {
     std::uint64_t frame;
     bool waits;
     bool readable;
+    int moved;              // to the side
     bool believed;          // whether it lies on a trace
     bool left;              // by the trace of the newest frame that was looked back from
     std::size_t row;        // there
@@ -192,6 +191,7 @@ class PendingAnswers {
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void look_at_windows(const PlaceMap& map, std::uint64_t newest,
                        std::span<BeliefTraces::Step> trace) noexcept;
+  void note_moves(std::uint64_t newest, std::span<BeliefTraces::Step> trace) noexcept;
   void ask_belief(const PlaceMap& map, std::uint64_t newest,
                   std::span<BeliefTraces::Step> trace) noexcept;
   void ask_steps(std::span<BeliefTraces::Step> trace) const noexcept;
@@ -212,9 +212,8 @@ class PendingAnswers {
   bool grows_;
   double least_;
   double least_before_calibration_;
-  std::uint64_t moved_from_ = 0;  // frame
-  std::uint64_t first_ = 0;       // frame that may still wait
-  std::uint64_t end_ = 0;         // after the newest
+  std::uint64_t first_ = 0;  // frame that may still wait
+  std::uint64_t end_ = 0;    // after the newest
   std::size_t given_ = 0;
   std::optional<Evidence> evidence_;
   std::span<Waiting> waiting_;           // [depth + ds + 1 or more], a ring by frame

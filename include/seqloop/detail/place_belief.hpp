@@ -116,7 +116,7 @@ class PlaceBelief {
   /// What the best wrong rows gain, by novelty; 0 or more.
   [[nodiscard]] double usual_gain() const noexcept;
 
-  /// The newest frame's novelty, 0 .. 1; 0 where nothing is believed.
+  /// The newest frame's novelty, 0 .. 1, where something is believed of it.
   [[nodiscard]] double newest_novelty() const noexcept { return newest_novelty_; }
 
   /// The novelty that a frame of this drive has, 0 .. 1.

@@ -7,6 +7,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/descriptor_rows.hpp"
 #include "seqloop/detail/query_history.hpp"
+#include "seqloop/place_map.hpp"
 
 namespace seqloop {
 
@@ -16,8 +17,11 @@ namespace seqloop {
 /// are not known. Source: src/README.md, section 5.13.
 class SidewaysShift {
  public:
+  /// Rows to either side of a frame's that have to be less like it.
+  static constexpr std::size_t rows_beside = 2;
+
   /// Pairs of descriptors that a frame is compared by.
-  static constexpr std::size_t distances = 3;
+  static constexpr std::size_t distances = 3 + 2 * rows_beside;
 
   /// @param form of what is compared
   /// @param on   whether frames may be moved at all
@@ -41,20 +45,29 @@ class SidewaysShift {
     return now_ == 0 ? descriptor : moved_by(descriptor, now_);
   }
 
-  /// Takes what the newest frame shows of the place where the robot is believed to be.
+  /// Takes what the newest frame shows of the place where the robot is believed to be. Nothing is
+  /// learnt where a row beside it looks clearly more like the frame: where the robot turns, a row
+  /// too far on or back looks like one that is moved.
   /// @param queries    whose newest frame was `moved` by what holds now
   /// @param descriptor [D] of that frame, as it came
-  /// @param slot       of the place in `places`
-  /// @param novelty    of the frame, 0 .. 1
+  /// @param news       of the frame: its novelty by the belief in the place, 0 .. 1
   /// @return distances that were computed: `distances` at most
-  /// Work: these, and as often D. Allocates: never.
+  /// Work: these, and twice D. Allocates: never.
   std::size_t learn(const QueryHistory& queries, std::span<const float> descriptor,
-                    const DescriptorRows& places, std::size_t slot, double novelty) noexcept;
+                    const PlaceMap& map, std::size_t row, double news) noexcept;
+
+  /// Nobody knows where the robot is. After 200 such frames on end nobody knows of its track,
+  /// either: it may be on another side.
+  void learn_nothing() noexcept {
+    constexpr std::size_t most_lost = 200;
+    if (++lost_ > most_lost) begin();
+  }
 
   /// Another drive begins.
   void begin() noexcept {
     now_ = 0;
     seen_ = more_ = less_ = 0.0;
+    lost_ = 0;
   }
 
  private:
@@ -65,7 +78,8 @@ class SidewaysShift {
   std::size_t columns_ = 0;
   int most_ = 0;  // halves, to either side
   int now_ = 0;
-  double seen_ = 0.0;       // novelty of the frames that were learnt from
+  std::size_t lost_ = 0;    // frames on end that nothing was learnt from
+  double seen_ = 0.0;       // what was new of the frames that were learnt from
   double more_ = 0.0;       // how much more alike they would be with one half more, a mean
   double less_ = 0.0;       // with one less
   DescriptorRows frame_;    // [1], as it is compared

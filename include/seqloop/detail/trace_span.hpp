@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include "seqloop/detail/arena.hpp"
@@ -31,13 +30,11 @@ class TraceSpan {
 
   /// Says what each frame has to gain. Where roads meet, the frames that lead there look alike: in
   /// a drive that closes loops each has to gain .7 of what they gain on average. Frames that were
-  /// moved to the side by another measure are as like their places as that let them be, and have an
-  /// average of their own.
+  /// moved to the side alike are as like their places as that lets them be: each run of them has an
+  /// average of its own.
   /// @param trace the newest frame first
   /// @param least what a frame has to gain at least, by novelty; 0 or more
-  /// @param since_moved how many of the newest frames were moved by one measure
-  void ask(std::span<BeliefTraces::Step> trace, double least,
-           std::size_t since_moved = std::numeric_limits<std::size_t>::max()) const noexcept;
+  void ask(std::span<BeliefTraces::Step> trace, double least) const noexcept;
 
   /// @param trace  the newest frame first; at most `most`
   /// @param before that the oldest frame lies on the trace, as was known before, 0 .. 1

@@ -59,6 +59,7 @@ void match_noise(MatcherConfig config, std::size_t descriptor_size, std::mt19937
     return std::span<const float>(descriptor);
   };
   PlaceMap map(config, {places, size});
+  map.set_columns(size);  // any will do
   if (!closing) {
     while (!interrupted() && map.add(next())) {
     }

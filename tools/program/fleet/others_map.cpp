@@ -4,8 +4,9 @@
 namespace seqloop::program {
 namespace {
 
-/// Frames are standardised as those of the run are.
+/// Frames are standardised, and may be moved to the side, as those of the run are.
 PlaceMap& started_as(const PlaceMap& own, PlaceMap& map) {
+  map.set_columns(own.columns());
   const RunningStatistics& known = own.statistics();
   if (known.frames() == 0) return map;
   const std::vector<double> mean(known.mean().begin(), known.mean().end());
