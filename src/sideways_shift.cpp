@@ -61,7 +61,7 @@ std::size_t SidewaysShift::learn(const QueryHistory& queries, std::span<const fl
   const double weight = news / (nothing_seen + seen_);
   const auto learn_side = [&](double& mean, int halves) {
     if (halves > most_ || halves < -most_) return;
-    frame_.store(0, halves == 0 ? descriptor : moved_by(descriptor, halves));
+    frame_.store(0, moved_by(descriptor, halves));
     mean += weight * (like(frame_, 0, row) - here - mean);
   };
   learn_side(more_, now_ + 1);
@@ -90,6 +90,7 @@ void SidewaysShift::go_on() noexcept {
 
 std::span<const float> SidewaysShift::moved_by(std::span<const float> descriptor,
                                                int halves) noexcept {
+  if (halves == 0) return descriptor;
   const auto last = static_cast<std::ptrdiff_t>(columns_) - 1;
   const std::ptrdiff_t whole = halves >> 1;
   const std::ptrdiff_t beside = whole + (halves & 1);

@@ -42,7 +42,7 @@ class SidewaysShift {
   /// @return [D] unit L2 or zero; the same where nothing is to be moved; valid until the next call
   /// Work: D. Allocates: never.
   [[nodiscard]] std::span<const float> moved(std::span<const float> descriptor) noexcept {
-    return now_ == 0 ? descriptor : moved_by(descriptor, now_);
+    return moved_by(descriptor, now_);
   }
 
   /// Takes what the newest frame shows of the place where the robot is believed to be. Nothing is
@@ -56,8 +56,8 @@ class SidewaysShift {
   std::size_t learn(const QueryHistory& queries, std::span<const float> descriptor,
                     const PlaceMap& map, std::size_t row, double news) noexcept;
 
-  /// Nobody knows where the robot is. After 200 such frames on end nobody knows of its track,
-  /// either: it may be on another side.
+  /// Nobody knows where the robot is. After 200 such frames since something was learnt last nobody
+  /// knows of its track, either: it may be on another side.
   void learn_nothing() noexcept {
     constexpr std::size_t most_lost = 200;
     if (++lost_ > most_lost) begin();
@@ -78,7 +78,7 @@ class SidewaysShift {
   std::size_t columns_ = 0;
   int most_ = 0;  // halves, to either side
   int now_ = 0;
-  std::size_t lost_ = 0;    // frames on end that nothing was learnt from
+  std::size_t lost_ = 0;    // frames of a lost robot, since something was learnt last
   double seen_ = 0.0;       // what was new of the frames that were learnt from
   double more_ = 0.0;       // how much more alike they would be with one half more, a mean
   double less_ = 0.0;       // with one less
