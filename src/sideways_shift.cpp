@@ -2,6 +2,7 @@
 #include "seqloop/detail/sideways_shift.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "seqloop/detail/sketch.hpp"
 #include "seqloop/difference.hpp"
@@ -47,12 +48,19 @@ std::size_t SidewaysShift::learn(const QueryHistory& queries, std::span<const fl
   };
   const std::size_t newest = queries.row_of(queries.newest());
   const double here = like(queries.moved(), newest, row);
-  constexpr double clearly = 0.05;
   const CandidateRun session = map.order().around(row);
-  const std::size_t first = std::max(session.first + rows_beside, row) - rows_beside;
-  for (std::size_t at = first; at < std::min(session.last, row + rows_beside + 1); ++at) {
-    if (at != row && like(queries.moved(), newest, at) > here + clearly) return computed;
-  }
+  const auto best_beside = [&](const DescriptorRows& frames, std::size_t reach) {
+    double best = -1.0;
+    const std::size_t first = std::max(session.first + reach, row) - reach;
+    for (std::size_t at = first; at < std::min(session.last, row + reach + 1); ++at) {
+      if (at != row) best = std::max(best, like(frames, newest, at));
+    }
+    return best;
+  };
+  constexpr double clearly = 0.05;
+  if (best_beside(queries.moved(), rows_beside) > here + clearly) return computed;
+  constexpr double much = 0.1;
+  const double unmoved = now_ == 0 ? -1.0 : best_beside(queries.rows(), rows_unmoved) - much;
 
   // To begin with, as if that much had been seen of which neither side is any better.
   constexpr double nothing_seen = 5.0;
@@ -62,7 +70,9 @@ std::size_t SidewaysShift::learn(const QueryHistory& queries, std::span<const fl
   const auto learn_side = [&](double& mean, int halves) {
     if (halves > most_ || halves < -most_) return;
     frame_.store(0, moved_by(descriptor, halves));
-    mean += weight * (like(frame_, 0, row) - here - mean);
+    double there = like(frame_, 0, row);
+    if (std::abs(halves) < std::abs(now_)) there = std::max(there, unmoved);
+    mean += weight * (there - here - mean);
   };
   learn_side(more_, now_ + 1);
   learn_side(less_, now_ - 1);

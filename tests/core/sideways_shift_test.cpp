@@ -18,6 +18,7 @@ using test::Panorama;
 constexpr std::size_t columns = Panorama::columns;
 constexpr std::size_t size = Panorama::size;
 constexpr int most = 6;  // halves
+constexpr std::size_t rows_between = SidewaysShift::rows_unmoved - 1;
 
 /// A descriptor moved as the header says, in double.
 std::vector<float> moved(const std::vector<float>& descriptor, int halves) {
@@ -50,7 +51,7 @@ class Learner {
  public:
   explicit Learner(Arithmetic arithmetic, std::size_t known = columns, bool on = true)
       : config_(as_they_come(arithmetic)),
-        map_(config_, {2'000, size}),
+        map_(config_, {3'000, size}),
         queries_(memory_.arena, DescriptorForm(config_, size), 2, true),
         shift(memory_.arena, DescriptorForm(config_, size), on) {
     shift.stand_in(known);
@@ -156,6 +157,29 @@ TEST_P(Shifts, LearnNothingWhereARowBesideIsMoreAlike) {
       EXPECT_EQ(computed < 4, has_better) << computed;
     }
     EXPECT_EQ(learner.shift.halves(), has_better ? 0 : 4);
+  }
+}
+
+// Whatever it takes it for, it has no reason to move what some row shows as it is.
+TEST_P(Shifts, AreGivenUpWhereARowNearByShowsTheFrameAsItCame) {
+  const oracle::Vectors frames = Panorama(7, 200).seen(columns, 0.0F, 1);
+  const oracle::Vectors noise = Panorama(8, 200).seen(columns, 0.0F, 1);
+  std::vector<float> none(size, 0.0F);
+  for (const std::size_t between : {std::size_t{0}, rows_between, rows_between + 1}) {
+    Learner learner(GetParam());
+    for (const auto& frame : frames) static_cast<void>(learner.learn(frame, moved(frame, 4)));
+    ASSERT_EQ(learner.shift.halves(), 4);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      std::vector<float> place = moved(frames[i], 4);
+      std::ranges::transform(place, noise[i], place.begin(), std::plus<>());
+      ASSERT_TRUE(normalise(place));
+      if (between > 0) static_cast<void>(learner.learn(none, frames[i], 0.0));
+      for (std::size_t row = 0; row < between; ++row) {
+        static_cast<void>(learner.learn(none, none, 0.0));
+      }
+      static_cast<void>(learner.learn(frames[i], place));
+    }
+    EXPECT_EQ(learner.shift.halves(), between == rows_between ? 0 : 4) << between;
   }
 }
 

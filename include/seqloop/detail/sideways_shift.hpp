@@ -20,8 +20,11 @@ class SidewaysShift {
   /// Rows to either side of a frame's that have to be less like it.
   static constexpr std::size_t rows_beside = 2;
 
+  /// Rows to either side that the frame may show as it came.
+  static constexpr std::size_t rows_unmoved = 6;
+
   /// Pairs of descriptors that a frame is compared by.
-  static constexpr std::size_t distances = 3 + 2 * rows_beside;
+  static constexpr std::size_t distances = 3 + 2 * rows_beside + 2 * rows_unmoved;
 
   /// @param form of what is compared
   /// @param on   whether frames may be moved at all
@@ -45,9 +48,10 @@ class SidewaysShift {
     return moved_by(descriptor, now_);
   }
 
-  /// Takes what the newest frame shows of the place where the robot is believed to be. Nothing is
-  /// learnt where a row beside it looks clearly more like the frame: where the robot turns, a row
-  /// too far on or back looks like one that is moved.
+  /// Takes what the newest frame shows of the place where the robot is believed to be. Where the
+  /// robot turns, or looks to the side, a row too far on or back looks like one that is moved. So
+  /// nothing is learnt where a row beside it looks clearly more like the frame, and a row near by
+  /// that is much more like the frame as it came speaks for moving it less.
   /// @param queries    whose newest frame was `moved` by what holds now
   /// @param descriptor [D] of that frame, as it came
   /// @param news       of the frame: its novelty by the belief in the place, 0 .. 1
