@@ -481,6 +481,16 @@ bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame)
          first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
 }
 
+/// Whether a line's rows are as far apart as the frames that they were.
+bool PendingAnswers::has_all(const PlaceMap& map, const FoundLine& line) const noexcept {
+  const auto offsets = trajectories_->offsets(line.line);
+  const auto row = [&](std::int64_t by) {
+    return static_cast<std::size_t>(
+        std::max<std::int64_t>(static_cast<std::int64_t>(line.row) + by, 0));
+  };
+  return line.row < map.size() && map.has_all(row(offsets.front()), row(offsets.back()));
+}
+
 Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
   const PlaceOrder& order = map.order();
   // A row that is `by` rows from another, or as far that way as its session goes.
@@ -506,6 +516,7 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
         if (!line || (whole && !lies_on_trace(order, other))) continue;
         if (wanted == Line::best && margin(map, slot_of(other), line->row) < 0.0) continue;
         const auto offsets = trajectories_->offsets(line->line);
+        if (whole && !has_all(map, *line)) continue;
         const std::size_t from = whole ? line->row : at(frame).row;
         const std::int64_t there =
             whole ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)] : 0;

@@ -61,6 +61,8 @@ PlaceMap::PlaceMap(Arena arena, const MatcherConfig& config, const Capacity& cap
                                              DescriptorRows::sketch_room(rows_.form()))),
       spacing_(
           arena.take<float>("spacing of places", full_map_ == FullMap::thin ? capacity.places : 0)),
+      thinned_(arena.take<std::uint8_t>("places behind thinned ones",
+                                        full_map_ == FullMap::thin ? capacity.places : 0)),
       first_visits_(arena.take<std::uint64_t>(
           "visits of one place", config.decision == Decision::probability ? capacity.places : 0)),
       stood_(arena.take<std::uint32_t>(
@@ -151,6 +153,7 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
   order_.insert(session, place.frame, place.number);
   if (!first_visits_.empty()) first_visits_[slot] = place.number;
   if (!stood_.empty()) stood_[slot] = 0;
+  if (!thinned_.empty()) thinned_[slot] = 0;
   if (last_linked_ >= last && last + 1 < size()) ++*last_linked_;
   space(last);
   return last;
@@ -167,6 +170,7 @@ std::size_t PlaceMap::append(std::uint64_t frame, std::uint64_t number) noexcept
   const std::size_t slot = order_.append(frame, number);
   if (!first_visits_.empty()) first_visits_[slot] = number;
   if (!stood_.empty()) stood_[slot] = 0;
+  if (!thinned_.empty()) thinned_[slot] = 0;
   return slot;
 }
 
@@ -177,6 +181,14 @@ void PlaceMap::space(std::size_t row) noexcept {
   const bool begins = row == order_.around(row).first;
   spacing_[slot] = begins ? std::numeric_limits<float>::infinity()
                           : static_cast<float>(rows_.between(slot, order_.slot(row - 1)));
+}
+
+bool PlaceMap::has_all(std::size_t first, std::size_t last) const noexcept {
+  if (thinned_.empty()) return true;
+  for (std::size_t row = first + 1; row <= std::min(last, size() - 1); ++row) {
+    if (thinned_[order_.slot(row)] != 0) return false;
+  }
+  return true;
 }
 
 void PlaceMap::link(std::size_t row, std::size_t earlier) noexcept {
@@ -224,7 +236,10 @@ PlaceMap::Taken PlaceMap::take(const DescriptorRows& queries, std::size_t query,
       --*last_linked_;
     }
     // The row behind the gap has another one before it now.
-    if (*taken.removed < size()) space(*taken.removed);
+    if (*taken.removed < size()) {
+      space(*taken.removed);
+      if (!thinned_.empty()) thinned_[order_.slot(*taken.removed)] = 1;
+    }
   }
   const std::size_t slot = append(frame, order_.next_number());
   rows_.copy(slot, queries, query);

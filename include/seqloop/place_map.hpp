@@ -177,6 +177,11 @@ class PlaceMap {
   /// Work: `StopRun::around`. Allocates: never.
   [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row) const noexcept;
 
+  /// Whether every place that was ever between two rows still is: where the map has been thinned
+  /// out, rows are further apart than the frames that they were.
+  /// @param first, last rows of one session, `first` the lower. Work: last - first.
+  [[nodiscard]] bool has_all(std::size_t first, std::size_t last) const noexcept;
+
   /// Whether two rows are one place, or lie beside it: near each other, or their first visits are.
   [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept {
     return order_.apart(a, b) <= beside || (!first_visits_.empty() && same_first_visit(a, b));
@@ -253,7 +258,8 @@ class PlaceMap {
   std::size_t hand_ = 0;                  // thinning goes round the rows from here
   // [capacity] by slot, for thinning: difference to the row before, infinite to another session's
   std::span<float> spacing_;
-  std::span<std::uint64_t> first_visits_;   // [capacity] by slot
+  std::span<std::uint8_t> thinned_;        // [capacity] by slot: whether places before it have gone
+  std::span<std::uint64_t> first_visits_;  // [capacity] by slot
   std::optional<std::size_t> last_linked_;  // row
   std::span<std::uint32_t> stood_;  // [capacity] by slot: frames behind it that are no places
 };

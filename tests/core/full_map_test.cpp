@@ -336,6 +336,57 @@ TEST(FullMap, AThinnedMapGoesOnFindingTheRobot) {
   EXPECT_GT(accepted, 110U);
 }
 
+/// A way of which some stretches change faster than others, so that one is thinned out before
+/// another.
+oracle::Vectors uneven_lap(std::size_t frames, std::uint32_t visit) {
+  const oracle::Vectors points = test::way(3, frames, 0.0F, 0, 256, 0.7F);
+  std::mt19937 random(visit);
+  oracle::Vectors lap;
+  float at = 0.0F;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    const auto point = static_cast<std::size_t>(at);
+    const float on = at - static_cast<float>(point);
+    std::vector<float> seen(points[point].size());
+    for (std::size_t d = 0; d < seen.size(); ++d) {
+      const float noise = static_cast<float>(random()) / 4294967296.0F - 0.5F;
+      seen[d] = (1.0F - on) * points[point][d] + on * points[point + 1][d] + 0.1F * noise;
+    }
+    lap.push_back(std::move(seen));
+    at += frame / 25 % 2 == 0 ? 0.8F : 0.15F;
+  }
+  return test::unit(std::move(lap));
+}
+
+// Lines run as if the rows that are left were as far apart as the frames that they were.
+TEST(FullMap, AThinnedMapSaysWhereToAFewFrames) {
+  constexpr std::size_t lap = 300;
+  constexpr std::size_t ends = 20;  // one lap goes on as the next
+  for (const std::size_t places : {340U, 400U, 600U}) {
+    MatcherConfig config;
+    config.use = Use::close_loops;
+    config.full_map = FullMap::thin;
+    PlaceMap map(config, {places, 256});
+    Detector detector(config, map);
+    std::size_t accepted = 0;
+    std::size_t off = 0;
+    for (std::uint32_t visit = 1; visit <= 5; ++visit) {
+      for (const auto& seen : uneven_lap(lap, visit)) {
+        const FrameReport report = detector.step(seen);
+        for (const Answer& answer : report.answers) {
+          const auto at = static_cast<std::size_t>(answer.frame) % lap;
+          if (answer.gate != Gate::match || at < ends || at + ends > lap) continue;
+          const auto said = static_cast<std::size_t>(answer.match->frame()) % lap;
+          ++accepted;
+          off += std::max(at, said) - std::min(at, said) > 10 ? 1U : 0U;
+        }
+      }
+    }
+    std::printf("%zu places: %zu accepted, %zu off by more than 10\n", places, accepted, off);
+    EXPECT_GT(accepted, 900U);
+    EXPECT_LE(off, 5U);
+  }
+}
+
 /// A map of one earlier drive, which is full.
 PlaceMap full_of(const oracle::Vectors& places, const MatcherConfig& config) {
   PlaceMap map(config, {places.size(), places.front().size(), 2});

@@ -201,6 +201,7 @@ class PendingAnswers {
   [[nodiscard]] std::optional<FoundLine> line_near(const PlaceMap& map,
                                                    std::uint64_t frame) noexcept;
   [[nodiscard]] bool lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept;
+  [[nodiscard]] bool has_all(const PlaceMap& map, const FoundLine& line) const noexcept;
   [[nodiscard]] Match match(const PlaceMap& map, std::uint64_t frame) noexcept;
   [[nodiscard]] bool may_be_new(const PlaceMap& map, std::uint64_t began) const noexcept;
   void give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting, bool may_be_new) noexcept;
