@@ -114,15 +114,18 @@ bool RunningStatistics::standardise(std::span<const float> descriptor,
                                     std::span<float> out) const noexcept {
   // A feature that hardly ever moves would be all noise if it were divided by its own deviation.
   constexpr double floor_share = 0.1;
+  // What all frames show alike, as the robot's own bonnet, is large for how little it moves: in a
+  // vector of unit length, by how much else there is to see.
+  constexpr double steady_share = 0.125;
   if (deviations_ <= 0.0) {
     std::ranges::fill(out.first(mean_.size()), 0.0F);
     return false;
   }
-  const auto floor =
-      static_cast<float>(floor_share * deviations_ / static_cast<double>(deviation_.size()));
+  const double floor = floor_share * deviations_ / static_cast<double>(deviation_.size());
   for (std::size_t d = 0; d < mean_.size(); ++d) {
     const double difference = static_cast<double>(descriptor[d]) - mean_[d];
-    out[d] = static_cast<float>(difference) / std::max(deviation_[d], floor);
+    const auto least = static_cast<float>(std::max(floor, steady_share * std::abs(mean_[d])));
+    out[d] = static_cast<float>(difference) / std::max(deviation_[d], least);
   }
   return normalise(out.first(mean_.size()));
 }

@@ -51,8 +51,8 @@ class RunningStatistics {
   /// Knows nothing any more: the next frame that is observed is the first.
   void forget() noexcept { frames_ = guessed_ = 0; }
 
-  /// Subtracts the mean, divides by the deviation (but by no less than a tenth of the average
-  /// deviation), and divides the whole by its L2 norm.
+  /// Subtracts the mean, divides by the deviation, and divides the whole by its L2 norm. What is
+  /// divided by is no less than a tenth of the average deviation, nor than an eighth of the mean.
   /// @param descriptor [D] read   @param out [>= D] written up to D; may be the same memory
   /// @return false when nothing deviates (variances below 1e-45): then out is the zero vector
   /// Error: at most 3e-7 of a value, against a deviation and a quotient that are not rounded to
