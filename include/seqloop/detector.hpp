@@ -91,7 +91,7 @@ class Detector {
   /// all rows are candidates, compared by `int8` or by Euclid's distances of floats, places are
   /// read once for all of these frames, which is several times faster.
   /// @param descriptors each as `step` takes it
-  /// @param reports     written; their answers stand until the next step
+  /// @param reports     written; their answers stand until the next step, or `finish`
   /// @return how many frames were taken, the first ones: all, or `MatcherConfig::frames_at_once`,
   ///   or as many as there are reports
   /// Work: as many steps. Allocates: never.
@@ -110,7 +110,7 @@ class Detector {
 
   /// Takes in a place that another robot has saved meanwhile, between two steps.
   /// @param session of the map; not the one that this detector adds to
-  /// @return as `PlaceMap::add_saved_to`
+  /// @return whether it has; not where `PlaceMap::add_saved_to` gives no row
   /// Work: as that, and what is remembered of rows; where all rows are candidates, the next step
   /// computes ds + 1 distances more. Allocates: never.
   bool take_in(std::size_t session, const PlaceMap::Saved& place) noexcept;

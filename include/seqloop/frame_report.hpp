@@ -54,7 +54,11 @@ struct Match {
   std::uint64_t stood = 0;
 
   /// The frame of the place's drive that shows what the answer's does: a place, or one at which the
-  /// robot still stood there.
+  /// robot still stood there. Like `place` a number of the map, over all of its sessions, while
+  /// `Answer::frame` is counted from 0 in each drive: frame f of a drive that is added has the
+  /// number n + f, where n was `map.order().next_number()` as its detector was made. Back from a
+  /// number, `map.order()` says `session_of_number` and, while the place is there, its
+  /// `row_of_number`, and of that the `frame`.
   [[nodiscard]] std::uint64_t frame() const noexcept { return place + stood; }
 };
 
@@ -97,7 +101,7 @@ struct Belief {
 /// What one step has to say.
 struct FrameReport {
   /// The final answers that became due with this step, in order of their frames; later steps may
-  /// answer earlier ones. In the detector's memory, until its next step.
+  /// answer earlier ones. In the detector's memory, until its next `step`, `steps` or `finish`.
   std::span<const Answer> answers;
   std::optional<Belief> now;  ///< of the newest frame; none before places can be compared
 

@@ -64,7 +64,8 @@ class PlaceMap {
   /// @param descriptor [D] as `Detector::step` takes it; only NaN and infinity are refused here,
   ///   and what else it would not take spoils the map. Of a frame that could not be read, give that
   ///   of the frame before it, or of the next where there is none: so places keep the numbers of
-  ///   their frames
+  ///   their frames. Not while a detector adds its drive, whose places would lose the numbers of
+  ///   its frames
   /// @return false when the map is full, or the descriptor is of another size or not finite: then
   ///   nothing has changed
   /// Work: 9 D, and the sketch. Allocates: never.
@@ -73,7 +74,14 @@ class PlaceMap {
   /// Numbers and frames lie below it.
   static constexpr std::uint64_t number_end = std::uint64_t{1} << 62U;
 
-  /// A place as it was saved.
+  /// A place as it was saved. What a map has to be saved with, for each row of it:
+  /// `order().number(row)`, `order().frame(row)`, `first_visit(row)`, and the bytes that
+  /// `rows().save(order().slot(row), bytes)` writes, `rows().saved_size()` of them; for each
+  /// session its rows, `order().session(i)`; and `order().next_number()`, the mean, variance and
+  /// frames of `statistics()`, or of the detector that added the newest session, and `columns()`. A
+  /// map of the same configuration and capacity is made of that by `begin_session` for each but the
+  /// first, `add_saved` and `set_first_visit` of its places, then `count_from`, `set_statistics`
+  /// and `set_columns`.
   struct Saved {
     std::uint64_t number = 0;  ///< above that of the place before it, below `number_end`
     std::uint64_t frame = 0;   ///< of its session, above that of the place before it, as far below
@@ -95,6 +103,8 @@ class PlaceMap {
   /// has seen meanwhile. A detector at work on the map must take it in itself: `Detector::take_in`.
   /// @param session that has places, or the newest; another than that only where `FullMap` is not
   ///   `refuse`: search keeps no room for maps out of order
+  /// @param place whose number is below that of the next session's first: leave room by
+  ///   `count_from` before that is begun
   /// @return its row, from which on rows are counted one higher; none as `add_saved` is false, and
   ///   for a session that is not there
   /// Work: as `add_saved`, and 2 N bytes moved. Allocates: never.
@@ -216,8 +226,9 @@ class PlaceMap {
   /// one drive that closes loops: only its detector standardises that.
   [[nodiscard]] bool standardises() const noexcept { return standardisation_.on && !holds_raw_; }
 
-  /// Statistics of the newest session that has any: a drive starts from them. `frames() == 0` where
-  /// nothing was learnt.
+  /// Statistics of the newest session that has any: a drive starts from them. A session that a
+  /// detector has added has those of `Detector::statistics`, once `set_statistics` was given them.
+  /// `frames() == 0` where nothing was learnt.
   [[nodiscard]] const RunningStatistics& statistics() const noexcept { return statistics_; }
 
  private:
