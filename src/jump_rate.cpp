@@ -6,23 +6,40 @@
 namespace seqloop {
 namespace {
 
+constexpr std::size_t off = 20;  // rows that either may be off, and a little more
+
+/// Whether a drive leads from one row to another of the same session by so many rows, or fewer.
+bool goes_on(const PlaceOrder& order, std::size_t from, std::size_t to, std::size_t most) {
+  const CandidateRun session = order.around(from);
+  return to >= session.first && to < session.last && to + off >= from && to <= from + most + off;
+}
+
+/// The row of the first visit of a place, if that is there still.
+std::size_t first_row(const PlaceMap& map, std::size_t row) {
+  return map.order().row_of_number(map.first_visit(row)).value_or(row);
+}
+
+/// Whether two rows are visits of one place, as far as that is known: links may be off, too.
+bool are_visits(const PlaceMap& map, std::size_t a, std::size_t b) {
+  return map.same_place(a, b) || map.order().apart(first_row(map, a), first_row(map, b)) <= off;
+}
+
 /// Whether a drive may lead from one row to another in so many frames: by 0 to 2 rows a frame, as
 /// the belief moves; through other visits of the same places; or, by a row a frame, beyond the end
 /// of a session and in at the beginning of one, as laps do where the map is one of them.
 bool leads_on(const PlaceMap& map, std::size_t from, std::size_t to, std::uint64_t frames) {
   constexpr std::uint64_t long_ago = 120;  // frames after which it may have come by another way
-  constexpr std::size_t off = 20;          // rows that either may be off, and a little more
   if (frames > long_ago) return true;
-  const CandidateRun before = map.order().around(from);
-  const CandidateRun after = map.order().around(to);
+  const PlaceOrder& order = map.order();
   const auto by = static_cast<std::size_t>(frames);
-  if (to >= before.first && to < before.last && to + off >= from && to <= from + 2 * by + off) {
-    return true;
-  }
+  if (goes_on(order, from, to, 2 * by)) return true;
+  const CandidateRun before = order.around(from);
+  const CandidateRun after = order.around(to);
   const std::size_t around_the_end = (before.last - 1 - from) + (to - after.first);
   if (around_the_end <= by + off) return true;
-  return map.same_place(from, to) || map.same_place(std::min(from + by, before.last - 1), to) ||
-         map.same_place(from, std::max(to - std::min(to, by), after.first));
+  return goes_on(order, first_row(map, from), first_row(map, to), 2 * by) ||
+         are_visits(map, from, to) || are_visits(map, std::min(from + by, before.last - 1), to) ||
+         are_visits(map, from, std::max(to - std::min(to, by), after.first));
 }
 
 }  // namespace

@@ -97,6 +97,21 @@ TEST(JumpRate, IsNoneBetweenVisitsOfOnePlace) {
   EXPECT_TRUE(is_jump(map, 110, 320, 1));
 }
 
+// A lap is linked as exactly as answers are: to some rows.
+TEST(JumpRate, IsNoneBetweenVisitsThatAreLinkedSomeRowsOff) {
+  for (const std::size_t rows : {0U, 15U, 19U, 20U, 21U, 22U, 45U}) {
+    SCOPED_TRACE(rows);
+    // Two later laps know rows 60 to 119 of the first one, one of them that many rows off.
+    PlaceMap map = map_of({200, 200, 200});
+    for (std::size_t i = 0; i < 60; ++i) map.link(240 + i, 60 + i);
+    for (std::size_t i = 0; i + rows < 60; ++i) map.link(440 + i, 60 + i + rows);
+    // From 65 to 66 and as many, and back.
+    EXPECT_EQ(is_jump(map, 245, 446, 1), rows + 1 > 22);
+    EXPECT_EQ(is_jump(map, 446, 245, 1), rows + 1 > 20);
+    EXPECT_FALSE(is_jump(map, 245, 446, 30)) << "it may have driven faster";
+  }
+}
+
 TEST(JumpRate, IsNoneFromTheEndOfASessionToTheBeginningOfOne) {
   const PlaceMap map = map_of({200, 200});
   // A lap, and a road that goes on in another session.
