@@ -419,7 +419,8 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
 
 /// Where the robot is believed to be, the newest frame tells how far to the side it drives. Where
 /// it was found lately that is known, and a place that it is less sure of may be another one that
-/// looks like it from elsewhere.
+/// looks like it from elsewhere, unless it has come to where its way leads: then it has changed
+/// lanes.
 /// @return distances that were computed
 std::size_t Detector::learn_shift() noexcept {
   constexpr double sure = 2.0;
@@ -430,7 +431,9 @@ std::size_t Detector::learn_shift() noexcept {
   }
   const Evidence& evidence = *pending_.evidence();
   const bool is_sure = log_odds(evidence) - evidence.asked >= sure;
-  if (!is_sure && pending_.found_lately(queries_.newest()) > 0.0) return 0;
+  const bool is_off_its_way = pending_.found_lately(queries_.newest()) > 0.0 &&
+                              !pending_.leads_to(map_->order(), queries_.newest(), likeliest->row);
+  if (!is_sure && is_off_its_way) return 0;
   return shift_.learn(queries_, standardised_, *map_, likeliest->row,
                       belief_.newest_novelty() * logistic(evidence.odds));
 }

@@ -105,6 +105,13 @@ double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
   return std::clamp((late - since) / (late - soon), 0.0, 1.0);
 }
 
+bool PendingAnswers::leads_to(const PlaceOrder& order, std::uint64_t frame,
+                              std::size_t row) const noexcept {
+  if (!last_found_ || last_found_->row == none) return false;
+  const auto since = static_cast<std::size_t>(frame - last_found_->frame);
+  return order.apart(row, last_found_->row + since) <= own + since / 4;
+}
+
 /// That the robot was at the frame's row when it took it.
 double PendingAnswers::probability(const Waiting& waiting) noexcept {
   return waiting.right * waiting.on.where(waiting.left);

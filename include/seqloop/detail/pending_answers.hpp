@@ -80,6 +80,11 @@ class PendingAnswers {
   /// @param frame the newest, or a later one
   [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
 
+  /// Whether the way from where the robot was found last leads to a row: by a row a frame, and a
+  /// quarter more or fewer. Not where it never was. @param frame as above
+  [[nodiscard]] bool leads_to(const PlaceOrder& order, std::uint64_t frame,
+                              std::size_t row) const noexcept;
+
   /// How much of the chance of a jump says that the robot will be found on the map again: the less,
   /// the longer it was not. @param frame as above
   [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
