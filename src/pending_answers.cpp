@@ -109,7 +109,8 @@ bool PendingAnswers::leads_to(const PlaceOrder& order, std::uint64_t frame,
                               std::size_t row) const noexcept {
   if (!last_found_ || last_found_->row == none) return false;
   const auto since = static_cast<std::size_t>(frame - last_found_->frame);
-  return order.apart(row, last_found_->row + since) <= own + since / 4;
+  const std::size_t end = order.around(last_found_->row).last - 1;
+  return order.apart(row, std::min(last_found_->row + since, end)) <= own + since / 4;
 }
 
 /// That the robot was at the frame's row when it took it.
@@ -488,7 +489,7 @@ bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame)
          first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
 }
 
-/// Whether a line's rows are as far apart as the frames that they were.
+/// Whether no place on a line has been thinned out.
 bool PendingAnswers::has_all(const PlaceMap& map, const FoundLine& line) const noexcept {
   const auto offsets = trajectories_->offsets(line.line);
   const auto row = [&](std::int64_t by) {

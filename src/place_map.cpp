@@ -153,7 +153,10 @@ std::optional<std::size_t> PlaceMap::insert_unsketched(std::size_t session,
   order_.insert(session, place.frame, place.number);
   if (!first_visits_.empty()) first_visits_[slot] = place.number;
   if (!stood_.empty()) stood_[slot] = 0;
-  if (!thinned_.empty()) thinned_[slot] = 0;
+  if (!thinned_.empty()) {
+    const bool follows_at_once = first == last || place.number == order_.number(last - 1) + 1;
+    thinned_[slot] = follows_at_once ? 0 : 1;
+  }
   if (last_linked_ >= last && last + 1 < size()) ++*last_linked_;
   space(last);
   return last;

@@ -79,9 +79,10 @@ class PlaceMap {
   /// `rows().save(order().slot(row), bytes)` writes, `rows().saved_size()` of them; for each
   /// session its rows, `order().session(i)`; and `order().next_number()`, the mean, variance and
   /// frames of `statistics()`, or of the detector that added the newest session, and `columns()`. A
-  /// map of the same configuration and capacity is made of that by `begin_session` for each but the
-  /// first, `add_saved` and `set_first_visit` of its places, then `count_from`, `set_statistics`
-  /// and `set_columns`.
+  /// map of the same configuration and capacity is made of that session by session: `count_from`
+  /// its first number and `begin_session` (not for the first), `add_saved` and `set_first_visit` of
+  /// its places; then `count_from` the next number, `set_statistics` and `set_columns`. A session
+  /// of which no place is left is none any more.
   struct Saved {
     std::uint64_t number = 0;  ///< above that of the place before it, below `number_end`
     std::uint64_t frame = 0;   ///< of its session, above that of the place before it, as far below
@@ -188,7 +189,9 @@ class PlaceMap {
   [[nodiscard]] std::optional<CandidateRun> stop_at(std::size_t row) const noexcept;
 
   /// Whether every place that was ever between two rows still is: where the map has been thinned
-  /// out, rows are further apart than the frames that they were.
+  /// out, rows are further apart than the frames that they were. Of places that were saved nobody
+  /// knows: in a map that thins out, those whose numbers do not follow each other count as if some
+  /// had gone, in others all as if none had.
   /// @param first, last rows of one session, `first` the lower. Work: last - first.
   [[nodiscard]] bool has_all(std::size_t first, std::size_t last) const noexcept;
 

@@ -251,6 +251,32 @@ TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
   EXPECT_LE(widest, 9U);
 }
 
+TEST(FullMap, AThinnedMapKnowsWherePlacesHaveGone) {
+  constexpr std::size_t capacity = 60;
+  MatcherConfig config = paper(Candidates::all, 0, Use::close_loops);
+  config.exclude = 1;
+  config.full_map = FullMap::thin;
+  PlaceMap map(config, {capacity, 16});
+  Detector detector(config, map);
+  for (const auto& seen : oracle::drive(5, 5 * capacity, 16)) {
+    static_cast<void>(detector.step(seen));
+    const std::size_t newest = map.size() - 1;
+    EXPECT_TRUE(map.has_all(newest > 0 ? newest - 1 : 0, newest));
+  }
+  EXPECT_FALSE(map.has_all(0, capacity - 1));
+  PlaceMap loaded(config, {capacity, 16});
+  std::vector<std::byte> bytes(map.rows().saved_size());
+  for (std::size_t row = 0; row < capacity; ++row) {
+    map.rows().save(map.order().slot(row), bytes);
+    ASSERT_TRUE(loaded.add_saved({map.order().number(row), map.order().frame(row), bytes}));
+  }
+  for (std::size_t row = 1; row < capacity; ++row) {
+    const bool follows = map.order().number(row) == map.order().number(row - 1) + 1;
+    EXPECT_EQ(map.has_all(row - 1, row), follows) << row;
+    EXPECT_EQ(loaded.has_all(row - 1, row), follows) << row;
+  }
+}
+
 TEST(FullMap, WhatIsNeededElsewhereStaysHoweverManyFramesComeAtOnce) {
   constexpr std::size_t capacity = 120;
   constexpr std::size_t at_once = 20;

@@ -58,6 +58,40 @@ struct Passing {
   PendingAnswers pending{seen.memory.arena, config, lines};
 };
 
+TEST(PendingAnswers, KnowWhereTheWayLeads) {
+  Passing drive;
+  TestArena memory;
+  PlaceOrder order(memory.arena, 400, 2);  // of two drives; the robot is on the first
+  for (std::uint64_t frame = 0; frame < 200; ++frame) order.append(frame);
+  ASSERT_TRUE(order.begin_session());
+  for (std::uint64_t frame = 0; frame < 200; ++frame) order.append(frame);
+  EXPECT_FALSE(drive.pending.leads_to(order, 0, 0)) << "it was found nowhere";
+  std::optional<std::uint64_t> found;
+  for (const auto& seen : test::way(1, 200, 0.3F, 2)) {
+    for (const Answer& answer : drive.step(seen, {})) {
+      if (answer.gate != Gate::match) continue;
+      ASSERT_EQ(answer.match->place, answer.frame);
+      found = answer.frame;
+    }
+  }
+  ASSERT_TRUE(found);
+  ASSERT_GT(*found, 160U);
+  const auto leads = [&](std::uint64_t after, std::size_t row) {
+    return drive.pending.leads_to(order, *found + after, row);
+  };
+  const auto row = static_cast<std::size_t>(*found);
+  EXPECT_TRUE(leads(0, row));
+  EXPECT_TRUE(leads(0, row + 6));
+  EXPECT_FALSE(leads(0, row + 7));
+  EXPECT_TRUE(leads(4, row + 4 - 7));
+  EXPECT_FALSE(leads(4, row + 4 - 8));
+  // Behind the end of the drive there is no way.
+  const std::uint64_t beyond = 210 - *found;
+  EXPECT_TRUE(leads(beyond, 199));
+  EXPECT_FALSE(leads(beyond, 200));
+  EXPECT_FALSE(leads(beyond, 210));
+}
+
 /// Of a whole drive. @param rows that sequence search finds, by frame
 std::vector<Answer> answers_of(Passing& passing, const oracle::Vectors& query,
                                const std::vector<std::optional<std::size_t>>& rows) {

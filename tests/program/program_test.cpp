@@ -710,7 +710,7 @@ TEST_F(Run, PlanPrintsEveryBufferAndTheMostWork) {
   const auto plan = expect_done("plan --max-places 10000 --descriptor-size 64 --ds 10");
   EXPECT_NE(plan.out.find("640000  map: places"), std::string::npos) << plan.out;
   EXPECT_NE(plan.out.find("285  descriptor distances"), std::string::npos)
-      << "256, 10 for the change degree, 7 for how far to the side: " << plan.out;
+      << "256, 10 for the change degree, 19 for how far to the side: " << plan.out;
   EXPECT_NE(plan.out.find("255  line sums"), std::string::npos) << "51 rows, 5 velocities";
   EXPECT_NE(plan.out.find("3  frames until the whole map"), std::string::npos) << plan.out;
   // However large the map, a fifth of a second of driving, as far as a tenth of the budget goes.

@@ -80,8 +80,9 @@ class PendingAnswers {
   /// @param frame the newest, or a later one
   [[nodiscard]] double found_lately(std::uint64_t frame) const noexcept;
 
-  /// Whether the way from where the robot was found last leads to a row: by a row a frame, and a
-  /// quarter more or fewer. Not where it never was. @param frame as above
+  /// Whether the way from where the robot was found last leads to a row: by a row a frame, six rows
+  /// and a quarter of the frames more or fewer, not beyond the session's end. Not where it never
+  /// was found. @param frame as above
   [[nodiscard]] bool leads_to(const PlaceOrder& order, std::uint64_t frame,
                               std::size_t row) const noexcept;
 
