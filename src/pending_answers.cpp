@@ -109,8 +109,10 @@ bool PendingAnswers::leads_to(const PlaceOrder& order, std::uint64_t frame,
                               std::size_t row) const noexcept {
   if (!last_found_ || last_found_->row == none) return false;
   const auto since = static_cast<std::size_t>(frame - last_found_->frame);
-  const std::size_t end = order.around(last_found_->row).last - 1;
-  return order.apart(row, std::min(last_found_->row + since, end)) <= own + since / 4;
+  const std::size_t there = last_found_->row + since;  // beyond the session's end there is no way
+  const CandidateRun session = order.around(last_found_->row);
+  return row >= session.first && row < session.last &&
+         std::max(row, there) - std::min(row, there) <= own + since / 4;
 }
 
 /// That the robot was at the frame's row when it took it.

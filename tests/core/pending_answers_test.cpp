@@ -90,6 +90,7 @@ TEST(PendingAnswers, KnowWhereTheWayLeads) {
   EXPECT_TRUE(leads(beyond, 199));
   EXPECT_FALSE(leads(beyond, 200));
   EXPECT_FALSE(leads(beyond, 210));
+  EXPECT_FALSE(leads(120, 199));
 }
 
 /// Of a whole drive. @param rows that sequence search finds, by frame
