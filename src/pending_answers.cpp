@@ -523,10 +523,10 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
         const std::uint64_t other = after ? frame + off : frame - off;
         if (other >= end_ || (after && off > trajectories_->centre())) continue;
         const auto line = line_near(map, other);
-        if (!line || (whole && !lies_on_trace(order, other))) continue;
+        if (!line) continue;
+        if (whole && !(has_all(map, *line) && lies_on_trace(order, other))) continue;
         if (wanted == Line::best && margin(map, slot_of(other), line->row) < 0.0) continue;
         const auto offsets = trajectories_->offsets(line->line);
-        if (whole && !has_all(map, *line)) continue;
         const std::size_t from = whole ? line->row : at(frame).row;
         const std::int64_t there =
             whole ? offsets[static_cast<std::size_t>(trajectories_->centre() + frame - other)] : 0;

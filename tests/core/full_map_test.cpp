@@ -232,12 +232,17 @@ TEST(FullMap, LoopsOntoTheWindowItselfAreScoredAsDefinedWhenPlacesGo) {
   }
 }
 
-// Where every place is as near to the next as any other, none of them may lose all its neighbours.
-TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
-  constexpr std::size_t capacity = 200;
+MatcherConfig thinning_frame_by_frame() {
   MatcherConfig config = paper(Candidates::all, 0, Use::close_loops);
   config.exclude = 1;
   config.full_map = FullMap::thin;
+  return config;
+}
+
+// Where every place is as near to the next as any other, none of them may lose all its neighbours.
+TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
+  constexpr std::size_t capacity = 200;
+  const MatcherConfig config = thinning_frame_by_frame();
   PlaceMap map(config, {capacity, 2});
   Detector detector(config, map);
   for (std::size_t frame = 0; frame < 3 * capacity; ++frame) {
@@ -253,9 +258,7 @@ TEST(FullMap, ThinningAnEvenDriveLeavesItEven) {
 
 TEST(FullMap, AThinnedMapKnowsWherePlacesHaveGone) {
   constexpr std::size_t capacity = 60;
-  MatcherConfig config = paper(Candidates::all, 0, Use::close_loops);
-  config.exclude = 1;
-  config.full_map = FullMap::thin;
+  const MatcherConfig config = thinning_frame_by_frame();
   PlaceMap map(config, {capacity, 16});
   Detector detector(config, map);
   for (const auto& seen : oracle::drive(5, 5 * capacity, 16)) {
@@ -371,13 +374,8 @@ oracle::Vectors uneven_lap(std::size_t frames, std::uint32_t visit) {
   float at = 0.0F;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const auto point = static_cast<std::size_t>(at);
-    const float on = at - static_cast<float>(point);
-    std::vector<float> seen(points[point].size());
-    for (std::size_t d = 0; d < seen.size(); ++d) {
-      const float noise = static_cast<float>(random()) / 4294967296.0F - 0.5F;
-      seen[d] = (1.0F - on) * points[point][d] + on * points[point + 1][d] + 0.1F * noise;
-    }
-    lap.push_back(std::move(seen));
+    const float share = at - static_cast<float>(point);
+    lap.push_back(test::between(points[point], points[point + 1], share, 0.1F, random));
     at += frame / 25 % 2 == 0 ? 0.8F : 0.15F;
   }
   return test::unit(std::move(lap));

@@ -112,6 +112,16 @@ TEST(JumpRate, IsNoneBetweenVisitsThatAreLinkedSomeRowsOff) {
   }
 }
 
+TEST(JumpRate, IsNoneIntoAnotherLapThatIsLinkedSomeRowsOff) {
+  // Two laps more, of 100 rows each, that are linked to the first one.
+  PlaceMap map = map_of({300});
+  for (std::size_t i = 0; i < 200; ++i) map.link(100 + i, i % 100);
+  // The drive leads from the end of the second lap to row 205, which is 5, and as many off.
+  EXPECT_FALSE(is_jump(map, 195, 115, 10));
+  EXPECT_FALSE(is_jump(map, 195, 125, 10));
+  EXPECT_TRUE(is_jump(map, 195, 126, 10));
+}
+
 TEST(JumpRate, IsNoneFromTheEndOfASessionToTheBeginningOfOne) {
   const PlaceMap map = map_of({200, 200});
   // A lap, and a road that goes on in another session.

@@ -85,7 +85,7 @@ TEST(PendingAnswers, KnowWhereTheWayLeads) {
   EXPECT_FALSE(leads(0, row + 7));
   EXPECT_TRUE(leads(4, row + 4 - 7));
   EXPECT_FALSE(leads(4, row + 4 - 8));
-  // Behind the end of the drive there is no way.
+  // Behind the end of the drive there is no way, and soon none to its last row.
   const std::uint64_t beyond = 210 - *found;
   EXPECT_TRUE(leads(beyond, 199));
   EXPECT_FALSE(leads(beyond, 200));

@@ -41,6 +41,18 @@ inline oracle::Vectors way(std::uint32_t seed, std::size_t frames, float noise, 
   return unit(drive);
 }
 
+/// What is seen on the way from one place to the next. @param share of the way
+/// @param noise of each value, at most half of it
+inline std::vector<float> between(const std::vector<float>& from, const std::vector<float>& to,
+                                  float share, float noise, std::mt19937& random) {
+  std::vector<float> seen(from.size());
+  for (std::size_t d = 0; d < seen.size(); ++d) {
+    const float here = static_cast<float>(random()) / 4294967296.0F - 0.5F;
+    seen[d] = (1.0F - share) * from[d] + share * to[d] + noise * here;
+  }
+  return seen;
+}
+
 /// So many frames for each of a drive, on the way from it to the next, and a little noise.
 inline oracle::Vectors slowly(const oracle::Vectors& drive, std::size_t frames,
                               std::uint32_t seed) {
@@ -49,12 +61,7 @@ inline oracle::Vectors slowly(const oracle::Vectors& drive, std::size_t frames,
   for (std::size_t at = 0; at + 1 < drive.size(); ++at) {
     for (std::size_t i = 0; i < frames; ++i) {
       const float share = static_cast<float>(i) / static_cast<float>(frames);
-      std::vector<float> seen(drive[at].size());
-      for (std::size_t d = 0; d < seen.size(); ++d) {
-        const float noise = static_cast<float>(random()) / 4294967296.0F - 0.5F;
-        seen[d] = (1.0F - share) * drive[at][d] + share * drive[at + 1][d] + 0.005F * noise;
-      }
-      slow.push_back(seen);
+      slow.push_back(between(drive[at], drive[at + 1], share, 0.005F, random));
     }
   }
   return unit(slow);
