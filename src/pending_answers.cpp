@@ -513,11 +513,16 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
   };
   // The line through the frame itself, or the nearest one that reaches it; one whose window lies on
   // the trace from end to end, if there is any. Otherwise the trace knows the row better. A line
-  // that does worse than one elsewhere comes after those that do not.
-  enum class Line { best, whole, any };
-  for (const Line wanted : {Line::best, Line::whole, Line::any}) {
+  // that does worse than one elsewhere comes after those that do not. One as slow or as fast as
+  // lines are comes after one near by that is not and does as well: the robot may have been slower
+  // or faster still.
+  enum class Line { between, best, whole, any };
+  const auto own = line_near(map, frame);
+  const double well = own ? margin(map, slot_of(frame), own->row) : 0.0;
+  for (const Line wanted : {Line::between, Line::best, Line::whole, Line::any}) {
     const bool whole = wanted != Line::any;
-    for (std::uint64_t off = 0; off <= trajectories_->window() / 2; ++off) {
+    const std::size_t farthest = trajectories_->window() / (wanted == Line::between ? 5 : 2);
+    for (std::uint64_t off = 0; off <= farthest; ++off) {
       for (const bool after : {true, false}) {
         if (!after && (off == 0 || frame < off)) continue;
         const std::uint64_t other = after ? frame + off : frame - off;
@@ -525,7 +530,12 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
         const auto line = line_near(map, other);
         if (!line) continue;
         if (whole && !(has_all(map, *line) && lies_on_trace(order, other))) continue;
-        if (wanted == Line::best && margin(map, slot_of(other), line->row) < 0.0) continue;
+        const double does = margin(map, slot_of(other), line->row);
+        if (wanted <= Line::best && does < 0.0) continue;
+        if (wanted == Line::between &&
+            (does < well || line->line == 0 || line->line + 1 == trajectories_->count())) {
+          continue;
+        }
         const auto offsets = trajectories_->offsets(line->line);
         const std::size_t from = whole ? line->row : at(frame).row;
         const std::int64_t there =

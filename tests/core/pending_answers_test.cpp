@@ -25,7 +25,7 @@ MatcherConfig not_standardised() {
 struct Passing {
   explicit Passing(const MatcherConfig& of = not_standardised()) : config(of) {}
 
-  /// @param rows that sequence search finds, by frame: each by one line, of velocity 1 and through
+  /// @param rows that sequence search finds, by frame: each by one line, of `velocity` and through
   ///   that row, once a whole window has come
   /// @return the answers of this step, until the next
   std::span<const Answer> step(const std::vector<float>& descriptor,
@@ -37,11 +37,10 @@ struct Passing {
     const std::size_t after = lines.window() - 1 - lines.centre();
     const auto centre = static_cast<std::size_t>(view.newest - after);
     if (view.newest >= lines.window() - 1 && centre < rows.size() && rows[centre]) {
-      std::size_t straight = 0;
-      while (lines.velocity(straight) != 1.0) ++straight;
-      const std::array lines_found{
-          FoundLine{*rows[centre], 0.5, 0.5, straight},
-          FoundLine{(*rows[centre] + 100) % 200, elsewhere, 0.5, straight}};
+      std::size_t line = 0;
+      while (std::abs(lines.velocity(line) - velocity) > 1e-9) ++line;
+      const std::array lines_found{FoundLine{*rows[centre], 0.5, 0.5, line},
+                                   FoundLine{(*rows[centre] + 100) % 200, elsewhere, 0.5, line}};
       pending.found(centre, std::span(lines_found).first(elsewhere > 0.0 ? 2 : 1));
     }
     pending.believe(belief, seen.map, view.newest, 0);
@@ -51,6 +50,7 @@ struct Passing {
 
   MatcherConfig config;
   double elsewhere = 0.0;  ///< score of a line through the row 100 away, where the other has .5
+  double velocity = 1.0;
   Seen seen{test::way(1, 200, 0.3F, 1), config};
   Trajectories lines{seen.memory.arena, config.sequence_length, config.vmin, config.vmax};
   PlaceBelief belief{seen.memory.arena, config};
@@ -141,27 +141,33 @@ TEST(PendingAnswers, NameTheRowHalfWayBetweenLineAndTrace) {
   }
 }
 
-/// The line of one frame is four rows off. Where its window shows another place better, the lines
-/// of the frames beside it come first.
-TEST(PendingAnswers, NameTheRowByAWindowThatShowsNoOtherPlaceBetter) {
+/// The line of one frame is four rows off. Where its window shows another place better, or it is as
+/// slow or as fast as lines are, those of the frames beside it come first.
+TEST(PendingAnswers, NameTheRowByALineThatShowsNoOtherPlaceBetterNorMayBeTooFast) {
   const oracle::Vectors query = test::way(1, 200, 0.3F, 2);
   constexpr std::size_t asked = 100;
   std::vector<std::optional<std::size_t>> rows;
   for (std::size_t i = 0; i < query.size(); ++i) rows.emplace_back(i == asked ? i + 4 : i);
-  const auto place_where = [&](double elsewhere) {
+  const auto place_where = [&](double elsewhere, double velocity) {
     Passing passing;
     const std::size_t after = passing.lines.window() - 1 - passing.lines.centre();
     std::optional<std::uint64_t> place;
     for (std::size_t i = 0; i < query.size(); ++i) {
       passing.elsewhere = i == asked + after ? elsewhere : 0.6;
+      passing.velocity = i == asked + after ? velocity : 1.0;
       for (const Answer& answer : passing.step(query[i], rows)) {
         if (answer.frame == asked && answer.match) place = answer.match->place;
       }
     }
     return place;
   };
-  EXPECT_EQ(place_where(0.6), asked + 2) << "half way between its line and the trace";
-  EXPECT_EQ(place_where(0.4), asked);
+  const MatcherConfig config = not_standardised();
+  EXPECT_EQ(place_where(0.6, 1.0), asked + 2) << "half way between its line and the trace";
+  EXPECT_EQ(place_where(0.4, 1.0), asked);
+  EXPECT_EQ(place_where(0.6, config.vmin), asked);
+  EXPECT_EQ(place_where(0.6, config.vmax), asked);
+  EXPECT_EQ(place_where(0.6, config.vmin + 1.0 / static_cast<double>(config.sequence_length)),
+            asked + 2);
 }
 
 /// Lines through another visit of the place that a trace goes through are its own.

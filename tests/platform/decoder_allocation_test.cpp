@@ -63,7 +63,7 @@ TEST(DescriberAllocations, TheBuiltInNeedsNoneForGrayPicturesThatShrink) {
   if (!AllocationGuard::works()) GTEST_SKIP() << "sanitizers bring a heap of their own";
   const auto describer = opencv::make_builtin_describer();
   std::vector<float> values(describer->size());
-  for (const cv::Size& size : {cv::Size(128, 64), cv::Size(640, 480), cv::Size(960, 540)}) {
+  for (const cv::Size& size : {cv::Size(256, 128), cv::Size(640, 480), cv::Size(960, 540)}) {
     const cv::Mat picture = test::textured(size.width, size.height, 1, CV_8UC1);
     const Image image = test::image_of(picture);
     ASSERT_EQ(describer->describe(image, values), Description::good);

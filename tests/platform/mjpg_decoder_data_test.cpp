@@ -49,7 +49,7 @@ TEST(MjpgDecoderData, ReducedGrayPicturesGiveNearlyTheSameDescriptors) {
       Image image;
       ASSERT_EQ(decoder.decode(test::mjpg(jpeg, picture.cols, picture.rows), image), "")
           << entry.path();
-      ASSERT_LE(image.width, picture.cols / 4);
+      ASSERT_LE(image.width, picture.cols / 2);
       ASSERT_EQ(describer->describe(test::image_of(picture), whole), Description::good);
       ASSERT_EQ(describer->describe(image, reduced), Description::good);
       farthest = std::max(farthest, distance(whole, reduced));

@@ -15,7 +15,7 @@ TEST(CameraDecoder, TakesWhateverACameraSends) {
   Image image;
   const test::Bytes jpeg = test::jpeg_of(test::textured(1280, 720));
   ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 1280, 720), image), "");
-  EXPECT_EQ(image.width, 640);  // a quarter would be less than four times 128x64
+  EXPECT_EQ(image.width, 640);  // a quarter would be less than twice 256x128
   EXPECT_EQ(image.format, PixelFormat::gray8);
   const test::Bytes yuyv(std::size_t{640} * 480 * 2, 100);
   ASSERT_EQ(decoder.decode({yuyv, 640, 480, 1280, RawFormat::yuyv}, image), "");
@@ -43,7 +43,7 @@ TEST(CameraDecoder, MakesColourWhereThatIsNeeded) {
   Image image;
   const test::Bytes jpeg = test::jpeg_of(test::textured(640, 480));
   ASSERT_EQ(decoder.decode(test::mjpg(jpeg, 640, 480), image), "");
-  EXPECT_EQ(image.height, 480);  // half of it is less than four times 224
+  EXPECT_EQ(image.height, 480);  // half of it is less than twice 224
   EXPECT_EQ(image.format, PixelFormat::bgr8);
   const test::Bytes nv12(std::size_t{640} * 480 * 3 / 2, 100);
   ASSERT_EQ(decoder.decode({nv12, 640, 480, 640, RawFormat::nv12}, image), "");

@@ -189,7 +189,7 @@ class Maps(unittest.TestCase):
         theirs = sorted((answer["frame"], answer["match"]) for line in lines for answer in line["answers"]
                         if answer["match"] is not None)
         self.assertEqual([(int(row[0]), int(row[1])) for row in ours], theirs)
-        with self.assertRaisesRegex(seqloop.SetupError, "described by 'gradients'"):
+        with self.assertRaisesRegex(seqloop.SetupError, "described by 'gradients of 256x128'"):
             seqloop.PlaceMap.open(file, describer.size, read_only=True)
 
     def test_what_is_refused(self) -> None:

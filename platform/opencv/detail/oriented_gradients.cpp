@@ -12,12 +12,14 @@ constexpr double selectivity = 0.7;
 constexpr float epsilon = 1.0F;  // squared grey levels
 constexpr int tensor_step = 2;   // pixels
 
-// A cell is 6 x 14 tensors, every 4 x 8: along a row, a block of 8 and the first 6 of the next one.
-constexpr int cell_rows = 6;
-constexpr int cell_row_step = 4;
-constexpr int cell_columns = 14;
-constexpr int block = 8;
+// A cell is 9 x 24 tensors, every 8 x 16: along a row, a block of 16 and the first 8 of the next
+// one. Columns begin at the fourth tensor: as many are left out on the left as on the right.
+constexpr int cell_rows = 9;
+constexpr int cell_row_step = 8;
+constexpr int cell_columns = 24;
+constexpr int block = 16;
 constexpr int overlap = cell_columns - block;
+constexpr std::size_t first_tensor = 3;
 
 /// As the net's file has it, so that no digit depends on a library's sine.
 float rounded(double weight) { return static_cast<float>(std::round(weight * 1e6) / 1e6); }
@@ -56,7 +58,7 @@ void OrientedGradients::find_tensors(const std::uint8_t* pixels, std::size_t str
   }
   constexpr float mean = 1.0F / (4 * 9);
   for (std::size_t i = 0; i < tensor_columns; ++i) {
-    const std::size_t x = tensor_step * i;
+    const std::size_t x = tensor_step * (first_tensor + i);
     const float jxx = mean * static_cast<float>(xx[x] + xx[x + 1] + xx[x + 2]);
     const float jyy = mean * static_cast<float>(yy[x] + yy[x + 1] + yy[x + 2]);
     const float all = mean * static_cast<float>(sum[x] + sum[x + 1] + sum[x + 2]);

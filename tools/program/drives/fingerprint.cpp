@@ -31,6 +31,7 @@ std::uint64_t hash_of(const std::filesystem::path& path) {
 
 std::string fingerprint(const DriveSettings& settings) {
   std::string text = settings.descriptor.empty() ? "gradients" : settings.descriptor;
+  if (text == "gradients") text += " of 256x128";  // without a size they are of 128x64
   opencv::ModelSettings model = settings.model;
   if (!model.model.empty()) {
     text = "model";

@@ -6,7 +6,7 @@
 namespace seqloop::program {
 
 PictureNeeds with_margin(const PictureNeeds& needs) {
-  constexpr int margin = 4;
+  constexpr int margin = 2;
   constexpr int enough_width = 640;
   constexpr int enough_height = 480;
   return {std::max(needs.width, std::min(margin * needs.width, enough_width)),

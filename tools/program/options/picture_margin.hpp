@@ -5,10 +5,9 @@
 
 namespace seqloop::program {
 
-/// The size at which a camera's pictures are asked for and decoded: four times what the describer
-/// brings them to, but no more than 640x480 unless it needs more. Then a camera sees a place as a
-/// recording does: of 180 answers on Gardens Point (ds 20, MJPG, built-in descriptor), 10 are
-/// others than with whole pictures at the very size, 8 at twice, 2 at four times the size.
+/// The size at which a camera's pictures are asked for and decoded: twice what the describer brings
+/// them to, but no more than 640x480 unless it needs more. Then a camera sees a place as a
+/// recording does, whose pictures are decoded whole.
 [[nodiscard]] PictureNeeds with_margin(const PictureNeeds& needs);
 
 }  // namespace seqloop::program

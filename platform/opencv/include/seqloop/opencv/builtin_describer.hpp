@@ -10,7 +10,7 @@
 namespace seqloop::opencv {
 
 /// The descriptor that needs no model file: oriented gradients, a fixed filter bank without
-/// training. It sees grey only. Of the same 128x64 grey pixels it makes the same bytes on every
+/// training. It sees grey only. Of the same 256x128 grey pixels it makes the same bytes on every
 /// processor. Describing allocates nothing where a grey picture keeps its size and shrinks.
 [[nodiscard]] std::unique_ptr<Describer> make_builtin_describer();
 
