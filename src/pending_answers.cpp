@@ -517,11 +517,14 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
   // lines are comes after one near by that is not and does as well: the robot may have been slower
   // or faster still.
   enum class Line { between, best, whole, any };
-  const auto own = line_near(map, frame);
-  const double well = own ? margin(map, slot_of(frame), own->row) : 0.0;
+  const auto through_it = line_near(map, frame);
+  const double well =
+      through_it ? std::max(0.0, margin(map, slot_of(frame), through_it->row)) : 0.0;
+  const std::size_t fastest = trajectories_->count() - 1;
   for (const Line wanted : {Line::between, Line::best, Line::whole, Line::any}) {
     const bool whole = wanted != Line::any;
     const std::size_t farthest = trajectories_->window() / (wanted == Line::between ? 5 : 2);
+    const double least = wanted == Line::between ? well : 0.0;
     for (std::uint64_t off = 0; off <= farthest; ++off) {
       for (const bool after : {true, false}) {
         if (!after && (off == 0 || frame < off)) continue;
@@ -530,12 +533,8 @@ Match PendingAnswers::match(const PlaceMap& map, std::uint64_t frame) noexcept {
         const auto line = line_near(map, other);
         if (!line) continue;
         if (whole && !(has_all(map, *line) && lies_on_trace(order, other))) continue;
-        const double does = margin(map, slot_of(other), line->row);
-        if (wanted <= Line::best && does < 0.0) continue;
-        if (wanted == Line::between &&
-            (does < well || line->line == 0 || line->line + 1 == trajectories_->count())) {
-          continue;
-        }
+        if (wanted <= Line::best && margin(map, slot_of(other), line->row) < least) continue;
+        if (wanted == Line::between && (line->line == 0 || line->line == fastest)) continue;
         const auto offsets = trajectories_->offsets(line->line);
         const std::size_t from = whole ? line->row : at(frame).row;
         const std::int64_t there =

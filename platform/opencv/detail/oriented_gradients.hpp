@@ -10,7 +10,7 @@ namespace seqloop::opencv {
 
 /// The built-in descriptor's filters, stage by stage as platform/opencv/model/make_builtin.py says,
 /// in the fixed order that makes the same bytes on every processor. As a net in OpenCV it takes
-/// several times as long, and 141 allocations.
+/// several times as long, and allocates.
 class OrientedGradients {
  public:
   static constexpr int width = 256;  // pixels
