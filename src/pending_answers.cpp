@@ -98,11 +98,19 @@ void PendingAnswers::forget_what_was_found() noexcept {
 
 /// Linear between: the robot may not be where the map is any more.
 double PendingAnswers::found_lately(std::uint64_t frame) const noexcept {
-  constexpr double soon = 100.0;
-  constexpr double late = 200.0;
+  return found_within(frame, 100.0);
+}
+
+/// One that comes back when it is carried about comes back soon.
+double PendingAnswers::chance_of_return(std::uint64_t frame) const noexcept {
+  return jumps() * found_within(frame, 50.0);
+}
+
+/// 1 up to so many frames after the robot was found, 0 from twice as many on.
+double PendingAnswers::found_within(std::uint64_t frame, double frames) const noexcept {
   if (!last_found_) return 0.0;
   const auto since = static_cast<double>(frame - last_found_->frame);
-  return std::clamp((late - since) / (late - soon), 0.0, 1.0);
+  return std::clamp(2.0 - since / frames, 0.0, 1.0);
 }
 
 bool PendingAnswers::leads_to(const PlaceOrder& order, std::uint64_t frame,

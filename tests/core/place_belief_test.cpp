@@ -923,7 +923,7 @@ TEST(PlaceBelief, WeighsEvidence) {
   const double followed =
       -5.879 + 0.104 * 3.0 + 0.89 * 4.0 + 0.6 * 0.5 + 15.0 * 0.05 + 0.808 * 2.0 + 8.984 * 0.1;
   EXPECT_NEAR(log_odds_followed(e), followed, 1e-12);
-  const double alone = -3.25 + 1.116 * 5.0 + 7.5 * 0.1 - 0.9 * 1.5;
+  const double alone = -4.0 + 1.116 * 5.0 + 10.0 * 0.1 + 10.0 * 0.05 - 0.9 * 1.5;
   EXPECT_NEAR(log_odds_alone(e), alone, 1e-12);
   // What is asked besides speaks against the newest frame; answers take the best of many.
   e.asked = 0.7;

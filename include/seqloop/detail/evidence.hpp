@@ -41,7 +41,7 @@ inline constexpr double least_odds = 2.0;
 /// place that has rivals: they may be as good. Source: as above.
 [[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
   if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
-  return -3.25 + 1.116 * e.known + 7.5 * e.margin - 0.9 * e.doubt;
+  return -4.0 + 1.116 * e.known + 10.0 * e.margin + 10.0 * e.in_step - 0.9 * e.doubt;
 }
 
 /// The log-odds that the row is right: either suffices. A robot that has been carried about on this

@@ -86,11 +86,9 @@ class PendingAnswers {
   [[nodiscard]] bool leads_to(const PlaceOrder& order, std::uint64_t frame,
                               std::size_t row) const noexcept;
 
-  /// How much of the chance of a jump says that the robot will be found on the map again: the less,
-  /// the longer it was not. @param frame as above
-  [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept {
-    return jumps() * found_lately(frame);
-  }
+  /// How much of the chance of a jump says that the robot will be found on the map again: all of it
+  /// up to 50 frames after it was, nothing from 100 on. @param frame as above
+  [[nodiscard]] double chance_of_return(std::uint64_t frame) const noexcept;
 
   /// Frames are missing, nobody knows how many: nothing was found lately, or is judged.
   void forget_what_was_found() noexcept;
@@ -184,6 +182,7 @@ class PendingAnswers {
   [[nodiscard]] std::span<FoundLine> lines_in(std::size_t slot) noexcept {
     return lines_.subspan(slot * lines_kept, lines_kept);
   }
+  [[nodiscard]] double found_within(std::uint64_t frame, double frames) const noexcept;
   [[nodiscard]] bool may_be_beyond_the_end(
       const PlaceMap& map, std::uint64_t newest,
       std::span<const BeliefTraces::Step> trace) const noexcept;
