@@ -37,8 +37,9 @@ inline constexpr double least_odds = 2.0;
          8.984 * e.margin;
 }
 
-/// The same by how little is left for all else, however short the trace is. It says nothing of a
-/// place that has rivals: they may be as good. Source: as above.
+/// The same by how little is left for all else, however short the trace is, by lines, and by how
+/// the place changes. It says nothing of a place that has rivals: they may be as good. Source: as
+/// above.
 [[nodiscard]] inline double log_odds_alone(const Evidence& e) noexcept {
   if (e.odds < least_odds) return -std::numeric_limits<double>::infinity();
   return -4.0 + 1.116 * e.known + 10.0 * e.margin + 10.0 * e.in_step - 0.9 * e.doubt;
