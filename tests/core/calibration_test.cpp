@@ -25,15 +25,15 @@ TEST(Calibration, RisesFromZeroToOneAndCanBeTurnedRound) {
 
 TEST(Calibration, SaysWhatWasRight) {
   // Section 6.6, below it, and between.
-  for (const auto& [given, right] : {std::pair{-14.0, -3.9 - 0.35},
-                                     {-13.0, -3.9},
-                                     {-9.0, -2.45},
-                                     {-4.6, -1.3},
-                                     {-1.4, -1.0},
-                                     {-0.3, -0.85},
+  for (const auto& [given, right] : {std::pair{-14.0, -4.3 - 0.2},
+                                     {-13.0, -4.3},
+                                     {-9.0, -3.3},
+                                     {-4.6, -2.1},
+                                     {-1.4, -1.5},
+                                     {-0.3, -1.25},
                                      {0.8, 0.0},
-                                     {1.5, 0.5},
-                                     {2.2, 1.0},
+                                     {1.5, 0.45},
+                                     {2.2, 0.9},
                                      {2.92, 1.6},
                                      {2.944, 2.944}}) {
     EXPECT_NEAR(log_odds(calibrated(of_odds(given))), right, 1e-9) << given;

@@ -209,7 +209,7 @@ TEST_F(Serve, IsWellAfterAPause) {
 
 TEST_F(Serve, NamesBothPlacesThatLookAlike) {
   start(
-      "--source q.npy --paper --method seqcnnslam --ds 10 --pace live --fps 100 --budget-total "
+      "--source q.npy --paper --method seqcnnslam --ds 10 --pace live --fps 60 --budget-total "
       "10000");
   http::test::Client page(port_);  // what is shown is chosen while somebody looks
   page.send("GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
