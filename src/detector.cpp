@@ -44,21 +44,21 @@ std::size_t queries_kept(const MatcherConfig& config) {
   return (kept + at_once - 1 + at_once - 1) / at_once * at_once;
 }
 
-/// How unlike neighbours among the places of a map usually are: 1 is as unlike as two that have
-/// nothing to do with each other. None where there are too few of them to tell.
-std::optional<double> spacing_of(const PlaceMap& map) {
+/// How unlike places of a map usually are that are so many rows apart: 1 is as unlike as two that
+/// have nothing to do with each other. None where there are too few of them to tell.
+std::optional<double> usually_unlike(const PlaceMap& map, std::size_t apart) {
   constexpr std::size_t least = 20;
   constexpr std::size_t most = 255;
   const PlaceOrder& order = map.order();
   if (order.size() < least) return std::nullopt;
   std::array<double, most> found;
-  const std::size_t pairs = std::min(most, order.size() - 1);
+  const std::size_t pairs = std::min(most, order.size() - apart);
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs; ++i) {
-    const std::size_t row = i * (order.size() - 1) / pairs;
-    if (order.apart(row, row + 1) != 1) continue;
+    const std::size_t row = i * (order.size() - apart) / pairs;
+    if (order.apart(row, row + apart) != apart) continue;
     const double d = chord(
-        map.rows().look_closely(map.rows().close_sketch(order.slot(row)), order.slot(row + 1)) /
+        map.rows().look_closely(map.rows().close_sketch(order.slot(row)), order.slot(row + apart)) /
         DescriptorRows::close_bits);
     found[count++] = d * d / 2.0;
   }
@@ -66,6 +66,18 @@ std::optional<double> spacing_of(const PlaceMap& map) {
   const auto middle = found.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(found.begin(), middle, found.begin() + static_cast<std::ptrdiff_t>(count));
   return *middle;
+}
+
+/// How unlike neighbours among the places of a map usually are. Snow, rain and noise are others in
+/// each frame, so that places are unlike by as much however near they are: that is left out where
+/// it is a good part. What is alike beside it falls by the same share from row to row.
+std::optional<double> spacing_of(const PlaceMap& map) {
+  constexpr double mostly = 0.7;
+  const std::optional<double> one = usually_unlike(map, 1);
+  const std::optional<double> two = usually_unlike(map, 2);
+  if (!one || !two || *one >= 1.0) return one;
+  const double without = std::max(0.0, (*two - *one) / (1.0 - *one));
+  return without < mostly * *one ? without : *one;
 }
 
 /// Steps whose frames are asked for: those that wait, the newest that are no candidates yet, and

@@ -274,6 +274,26 @@ TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
   EXPECT_LT(std::ranges::count(keyframes_of(slow, variance, 0.5), true), 2 * all / 3);
 }
 
+TEST(Keyframes, GoByWhatTellsPlacesApartAndNotByTheSnowThatFellThere) {
+  // Each frame of the drive is one of the map's; half of what the map shows is snow.
+  MatcherConfig config;
+  config.use = Use::localise;
+  const Vectors query = test::way(3, 200, 0.1F, 2, 256, 0.85F);
+  PlaceMap map = map_of(test::way(3, 200, 1.9F, 1, 256, 0.85F), config);
+  Detector detector(config, map);
+  std::size_t right = 0;
+  const auto count = [&](std::span<const Answer> answers) {
+    for (const Answer& answer : answers) {
+      right += static_cast<std::size_t>(answer.gate == Gate::match &&
+                                        answer.match->place == answer.frame);
+    }
+  };
+  for (const auto& seen : query) count(detector.step(seen).answers);
+  count(detector.finish());
+  std::printf("right %zu\n", right);
+  EXPECT_GT(right, 190U);
+}
+
 TEST(FrameSteps, AreTheFramesWhereEachIsOne) {
   const Memory memory;
   FrameSteps steps = memory.steps(0, 0);
