@@ -414,6 +414,10 @@ FrameReport Detector::match_centre(std::uint64_t newest, bool readable) noexcept
   if (best && config_.decision == Decision::probability) {
     std::array<FoundLine, PendingAnswers::lines_kept> lines;
     const std::size_t count = lowest_lines(search_, map_->order(), budget_.runs(), *best, lines);
+    const bool has_sessions = map_->order().newest_session().first > 0;
+    for (FoundLine& line : std::span(lines).first(has_sessions ? count : 0)) {
+      line.may_be_here = belief_.is_likeliest_of_session(*map_, ahead_of(line.row, line.line));
+    }
     pending_.found(*report.frame, std::span(lines).first(count));
     expect_next(*best, rows, newest);
   }
@@ -692,9 +696,13 @@ bool Detector::choose_candidates(std::uint64_t newest, std::size_t rows) noexcep
   return ranges_.full_search();
 }
 
-/// The row at the newest frame of the window's best line.
+/// The row at the newest frame of a line through a row at the centre.
+std::size_t Detector::ahead_of(std::size_t row, std::size_t line) const noexcept {
+  return row + static_cast<std::size_t>(trajectories_.offsets(line).back());
+}
+
 std::size_t Detector::ahead_of(const BestRow& best) const noexcept {
-  return best.row + static_cast<std::size_t>(trajectories_.offsets(search_.line(best.row)).back());
+  return ahead_of(best.row, search_.line(best.row));
 }
 
 /// Where the best line leads, the robot may be with the next frame: if it was found lately, for in

@@ -318,12 +318,19 @@ void PendingAnswers::look_back(const PlaceOrder& order, Waiting& waiting,
   if (evidence_->doubt < little_doubt) waiting.doubted = false;
 }
 
-/// How much better the best line through a frame's row is than the best one elsewhere.
+/// How much better the best line through a frame's row is than the best one elsewhere. Another
+/// session may know the place, too: a line to its likeliest row is none elsewhere.
 double PendingAnswers::margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept {
   std::optional<double> here;
   std::optional<double> elsewhere;
+  const PlaceOrder& order = map.order();
   for (const FoundLine& line : lines_in(slot).first(waiting_[slot].lines)) {
-    const bool same = line.row < map.size() && map.same_place(line.row, row);
+    const bool there = line.row < map.size();
+    const bool same = there && map.same_place(line.row, row);
+    if (there && !same && line.may_be_here &&
+        order.around(line.row).first != order.around(row).first) {
+      continue;
+    }
     std::optional<double>& lowest = same ? here : elsewhere;
     if (!lowest) lowest = line.score;
     if (here && elsewhere) break;
@@ -369,11 +376,14 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
     if (waiting.lines > 0) {
       accepted_.take(waiting.gain, waiting.novelty, margin(map, slot_of(frame), waiting.row));
     }
+    const std::optional<Found> before = last_found_;
     if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
       last_found_ = Found{frame, waiting.row};
     }
     if (grows_) continue;
-    jump_rate_.take(map, frame, waiting.row, began);
+    const bool goes_on = before && frame > before->frame && before->row < map.size() &&
+                         knows_another_session(map, waiting, before->row + (frame - before->frame));
+    jump_rate_.take(map, frame, waiting.row, goes_on ? frame : began);
   }
   // Frames from before a gap have all been answered now.
   oldest_before_ = oldest;
@@ -387,6 +397,17 @@ bool PendingAnswers::is_sure(const PlaceMap& map, const Waiting& waiting) noexce
   return waiting.believed && waiting.lag >= 2 * after_centre_ &&
          (grows_ || waiting.right * waiting.carried.left >= least_before_calibration_) &&
          told(map, waiting) >= least_before_calibration_;
+}
+
+/// Whether a row near this one, of another session, may be the place that a frame shows, too.
+bool PendingAnswers::knows_another_session(const PlaceMap& map, const Waiting& waiting,
+                                           std::size_t row) noexcept {
+  const PlaceOrder& order = map.order();
+  if (row >= map.size() || order.around(row).first == order.around(waiting.row).first) return false;
+  const auto lines = lines_in(slot_of(waiting.frame)).first(waiting.lines);
+  return std::ranges::any_of(lines, [&](const FoundLine& line) {
+    return line.may_be_here && order.apart(line.row, row) <= own + 2 * frames_at_a_meeting;
+  });
 }
 
 /// Whether a frame beside this one was on a trace that goes through another place. Where the robot
@@ -405,6 +426,7 @@ bool PendingAnswers::is_beside_a_jump(const PlaceMap& map, const Waiting& waitin
     if (carried && frame > waiting.frame && on_a_trace <= surely) return true;
     if (on_a_trace <= half) continue;
     if (map.order().apart(other.row, waiting.row) <= own + 2 * frames_at_a_meeting) continue;
+    if (knows_another_session(map, waiting, other.row)) continue;
     const bool both_there = std::max(other.row, waiting.row) < map.size();
     if (!both_there || !map.same_place(other.row, waiting.row)) return true;
   }

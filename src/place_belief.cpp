@@ -441,6 +441,16 @@ void PlaceBelief::normalise() noexcept {
   new_place_ /= sum;
 }
 
+bool PlaceBelief::is_likeliest_of_session(const PlaceMap& map, std::size_t row) const noexcept {
+  const CandidateRun session = map.order().around(row);
+  const Hypothesis* likeliest = nullptr;
+  for (const Hypothesis& at : rows_.first(count_)) {
+    if (at.row < session.first || at.row >= session.last) continue;
+    if (likeliest == nullptr || at.mass > likeliest->mass) likeliest = &at;
+  }
+  return likeliest != nullptr && map.same_place(row, likeliest->row);
+}
+
 void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps) noexcept {
   const std::span<Hypothesis> rows = rows_.first(count_);
   const auto top = std::ranges::max_element(rows, {}, &Hypothesis::mass);

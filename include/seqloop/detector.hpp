@@ -196,6 +196,7 @@ class Detector {
   [[nodiscard]] std::size_t fill_columns(std::uint64_t newest) noexcept;
   [[nodiscard]] bool choose_candidates(std::uint64_t newest, std::size_t rows) noexcept;
   void expect_next(const BestRow& best, std::size_t rows, std::uint64_t newest) noexcept;
+  [[nodiscard]] std::size_t ahead_of(std::size_t row, std::size_t line) const noexcept;
   [[nodiscard]] std::size_t ahead_of(const BestRow& best) const noexcept;
   void decide(FrameReport& report, const std::optional<BestRow>& best) const noexcept;
 

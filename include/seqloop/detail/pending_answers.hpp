@@ -25,6 +25,7 @@ struct FoundLine {
   double score;       ///< mean difference along it
   double uniqueness;  ///< as `Match` has it
   std::size_t line;
+  bool may_be_here = false;  ///< it leads to the likeliest row of its session
 };
 
 /// Frames that wait for their one final answer: until the evidence suffices, or as many frames have
@@ -193,6 +194,8 @@ class PendingAnswers {
   [[nodiscard]] bool is_beside_a_jump(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool is_borne_out(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
+  [[nodiscard]] bool knows_another_session(const PlaceMap& map, const Waiting& waiting,
+                                           std::size_t row) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void look_at_windows(const PlaceMap& map, std::uint64_t newest,
                        std::span<BeliefTraces::Step> trace) noexcept;

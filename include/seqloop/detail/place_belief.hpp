@@ -100,6 +100,9 @@ class PlaceBelief {
   /// That the robot is somewhere new, 0 .. 1.
   [[nodiscard]] double new_place() const noexcept { return new_place_; }
 
+  /// Whether a row is one place with the likeliest one of its session. Work: the hypotheses.
+  [[nodiscard]] bool is_likeliest_of_session(const PlaceMap& map, std::size_t row) const noexcept;
+
   /// The way that a row was come by: see `BeliefTraces`.
   std::size_t trace(std::size_t index, std::span<BeliefTraces::Step> out) const noexcept {
     return traces_.trace(index, out);
