@@ -404,6 +404,23 @@ TEST_F(LastingMaps, WhatIsRefusedMakesNoMap) {
   }
 }
 
+TEST_F(LastingMaps, WhatGoesFromAFullMapDoesNotDependOnHowSoonItIsSaved) {
+  write("long.npy", oracle::drive(3, 1500, 40, 0.2F));
+  for (const std::string every_s : {"0.001", "3600"}) {
+    const std::string map = "--map of" + every_s + ".seqloop --max-places 600 --full-map thin ";
+    for (const std::string drive : {"long", "other"}) {
+      expect_done("run --source " + drive + ".npy " + map + "--session " + drive +
+                  " --save-every-s " + every_s + " --out of" + every_s + drive + ".jsonl");
+    }
+    expect_done("map export of" + every_s + ".seqloop --out of" + every_s);
+  }
+  for (const std::string part : {"places.csv", "links.csv", "session-1.npy", "session-2.npy"}) {
+    const std::string soon = test::read_all(file("of0.001/" + part));
+    EXPECT_FALSE(soon.empty()) << part;
+    EXPECT_EQ(soon, test::read_all(file("of3600/" + part))) << part;
+  }
+}
+
 TEST_F(LastingMaps, OfADriveThatCannotBeReadNothingStays) {
   write("dark.npy", oracle::Vectors(100, std::vector<float>(40)));
   expect_done("run --source first.npy --map old.seqloop --session one --out l.jsonl");

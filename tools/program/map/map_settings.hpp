@@ -15,6 +15,7 @@ struct MapSettings {
   std::string session;        ///< name of the drive that is added; empty: when it began
   double save_every_s = 1.0;  ///< of driving, at most, are not saved yet
   bool thumbnails = true;     ///< of places that have pictures
+  bool waits = false;         ///< frames wait for the disk where it is far behind: no camera does
   bool novel = true;          ///< whole sessions go that were superseded; otherwise all stay
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "program/map/move_log.hpp"
+#include "program/process/interruption.hpp"
 
 namespace seqloop::program {
 namespace {
@@ -46,6 +47,7 @@ MapWriter::MapWriter(StoredMap& stored, const PlaceMap& map, const MatcherConfig
       numbers_(map.capacity(), none),
       linked_(map.capacity(), none),
       novel_(settings.novel),
+      waits_(settings.waits),
       added_(map.capacity()),
       links_(map.capacity()),
       read_places_(learnt_ ? 0 : none),
@@ -89,11 +91,30 @@ void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t in
   add_places(image);
   if (counted_ > settled_after_) settle(counted_ - settled_after_);
   hand_over_statistics(detector);
+  if (waits_ && readable) wait_for_the_disk();
   const std::uint64_t done = std::min(saved_places_.load(std::memory_order_acquire),
                                       read_places_.load(std::memory_order_acquire));
   const std::uint64_t needed = places_noted_.load(std::memory_order_relaxed) - done;
-  detector.keep_newest(static_cast<std::size_t>(needed));
+  detector.keep_newest(static_cast<std::size_t>(std::max(needed, kept())));
   frames_.store(counted_, std::memory_order_release);
+}
+
+std::uint64_t MapWriter::kept() const noexcept {
+  return std::clamp<std::uint64_t>(map_->capacity() / 8, 1, 1024);
+}
+
+/// Whether what began to be saved then should long be.
+bool MapWriter::stalls(std::int64_t since_ns) noexcept {
+  return since_ns != 0 && steady_ns() - since_ns > patience_ns;
+}
+
+/// A disk that takes nothing holds nobody up.
+void MapWriter::wait_for_the_disk() noexcept {
+  const std::uint64_t noted = places_noted_.load(std::memory_order_relaxed);
+  while (saved_places() + kept() < noted && !failing_ && !interrupted() &&
+         !stalls(saving_since_ns_.load(std::memory_order_relaxed)) && save_now()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 /// Notes where frames were, and how sure that is.
@@ -234,15 +255,15 @@ bool MapWriter::save() {
     if (ending_) save_once();  // the last statistics
   } catch (const std::exception& error) {
     why_ = error.what();
-    if (!std::exchange(failing_, true)) {
+    if (!failing_.exchange(true)) {
       tell(why_ + ": the run goes on, and what is missing is saved as soon as it can be");
     }
     saving_since_ns_.store(0, std::memory_order_relaxed);
     return false;
   }
   saving_since_ns_.store(0, std::memory_order_relaxed);
-  const bool stalled = !ending_ && steady_ns() - since > patience_ns;
-  if (std::exchange(failing_, false) || stalled) tell("what was missing is saved");
+  const bool stalled = !ending_ && stalls(since);
+  if (failing_.exchange(false) || stalled) tell("what was missing is saved");
   return true;
 }
 
@@ -382,7 +403,7 @@ void MapWriter::tell(std::string text) {
 
 std::optional<std::string> MapWriter::trouble() {
   const std::int64_t since = saving_since_ns_.load(std::memory_order_relaxed);
-  if (since != 0 && since != stalled_ns_ && steady_ns() - since > patience_ns) {
+  if (since != stalled_ns_ && stalls(since)) {
     stalled_ns_ = since;
     return stored_->path().string() +
            ": the disk has not taken it for two seconds: the run goes on, and what is missing is "

@@ -23,7 +23,8 @@ namespace seqloop::program {
 
 /// Saves what a drive adds to a map, in a thread of its own. Places are in the map already: the
 /// thread follows how far they are, and reads them there, so that no frame waits for the disk and
-/// nothing queues up. Until a place is saved, a full map does not forget it.
+/// nothing queues up. Until a place is saved, a full map does not forget it; nor does it forget the
+/// newest ones that are, so that what goes does not depend on how far the thread is.
 class MapWriter {
  public:
   /// All of them live longer. @param encode makes thumbnails; null: there are none
@@ -43,7 +44,8 @@ class MapWriter {
   /// @param readable whether it has a descriptor that is not blank; until one has, nothing is
   /// saved, since a full map's places would go for a drive that is discarded
   /// Work: log N and what the frame added, a thumbnail's pixels; every few times D copies.
-  /// Allocates: never. No system call, no waiting.
+  /// Allocates: never. No system call, no waiting: but where `MapSettings::waits` says so, until no
+  /// more than `kept` places are not saved yet.
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
             const Image& image, std::span<const Answer> answers, bool readable) noexcept;
 
@@ -112,6 +114,10 @@ class MapWriter {
   };
   enum class Handing : std::uint8_t { idle, asked, ready };
 
+  /// Newest places that a full map keeps: an eighth of it, 1024 at most.
+  [[nodiscard]] std::uint64_t kept() const noexcept;
+  [[nodiscard]] static bool stalls(std::int64_t since_ns) noexcept;
+  void wait_for_the_disk() noexcept;
   [[nodiscard]] Came& came(std::uint64_t counted) noexcept {
     return came_[static_cast<std::size_t>(counted % came_.size())];
   }
@@ -145,6 +151,7 @@ class MapWriter {
   std::vector<std::uint64_t> numbers_;        // [capacity], by slot: of places, or `none`
   std::vector<std::uint64_t> linked_;         // [capacity], by slot: to which place, or `none`
   bool novel_;
+  bool waits_;
 
   // Written by the loop, read by the thread up to the marks.
   std::vector<Added> added_;              // [capacity], a ring
@@ -164,7 +171,7 @@ class MapWriter {
   std::atomic<std::uint64_t> saved_links_{0};
   std::uint64_t number_after_ = 0;                // the last place that is saved
   std::atomic<std::int64_t> saving_since_ns_{0};  // on the steady clock; 0: nothing is saved now
-  bool failing_ = false;
+  std::atomic<bool> failing_{false};
   std::string why_;
   std::vector<Retired> retired_;
   std::vector<std::byte> bytes_;

@@ -57,7 +57,9 @@ void open_map(RunSetup& setup, const RunSettings& settings, const DriveSettings&
               Faults& faults) {
   collect(faults, [&] {
     const bool pictures = setup.describer != nullptr;
-    setup.map = open_map(settings.map, setup.config, setup.descriptor_size,
+    MapSettings of_map = settings.map;
+    of_map.waits = setup.live == nullptr && settings.pace != Pace::live;
+    setup.map = open_map(of_map, setup.config, setup.descriptor_size,
                          pictures ? fingerprint(drive) : "descriptors", pictures ? jpeg : nullptr);
   });
   if (!setup.map) return;
