@@ -61,17 +61,39 @@ class NaiveKeyframes {
       last_change_ = descriptor;
     }
     if (was_dense ? !changed : differs <= 0.15 * new_.mean() * unrelated) return false;
+    if (!was_dense && is_noise(descriptor, differs, unrelated)) return false;
     last_ = descriptor;
+    ++keyframes_;
+    if (earlier_.empty() || ++since_earlier_ == 17) {
+      since_earlier_ = 0;
+      earlier_ = descriptor;
+    }
     new_.take(std::min(differs, unrelated) / unrelated);
     return true;
   }
 
  private:
+  bool is_noise(const std::vector<float>& descriptor, double differs, double unrelated) {
+    const bool still =
+        keyframes_ >= 40 && since_earlier_ >= 8 && differs < 0.6 * unrelated &&
+        unrelated - squared_distance(earlier_, descriptor) >= 0.95 * (unrelated - differs) &&
+        (in_a_row_ == 0 || unrelated - differs >= 0.85 * alike_ / static_cast<double>(in_a_row_));
+    if (in_a_row_ == 0 || !still) alike_ = 0.0;
+    alike_ += unrelated - differs;
+    in_a_row_ = still ? in_a_row_ + 1 : 0;
+    return in_a_row_ >= 6;
+  }
+
   Usual apart_{1.0, 5.0};
   Usual new_{0.1};
   bool dense_ = false;
   std::uint64_t changes_ = 0;
   std::uint64_t since_change_ = 0;
+  std::uint64_t keyframes_ = 0;
+  std::uint64_t since_earlier_ = 0;
+  std::uint64_t in_a_row_ = 0;
+  double alike_ = 0.0;  // sum in that row
+  std::vector<float> earlier_;
   std::vector<float> last_ = std::vector<float>(2, 0.0F);
   std::vector<float> last_change_ = last_;
 };
@@ -292,6 +314,30 @@ TEST(Keyframes, GoByWhatTellsPlacesApartAndNotByTheSnowThatFellThere) {
   count(detector.finish());
   std::printf("right %zu\n", right);
   EXPECT_GT(right, 190U);
+}
+
+TEST(Keyframes, OfARobotThatStandsAreNoneHoweverMuchNoiseThereIs) {
+  // A value of the drive is up to 1.4 to either side.
+  constexpr std::size_t size = 1024;
+  for (const float noise : {0.5F, 1.0F}) {
+    SCOPED_TRACE(noise);
+    const Vectors way = test::way(4, 100, noise, 1, size);
+    // What stands is seen anew in each frame.
+    Vectors drive = way;
+    for (std::uint32_t visit = 2; visit < 202; ++visit) {
+      drive.push_back(test::way(4, 100, noise, visit, size).back());
+    }
+    const Vectors goes_on = test::way(4, 160, noise, 1, size);
+    drive.insert(drive.end(), goes_on.begin() + 100, goes_on.end());
+    const std::vector<bool> are = keyframes_of(drive, variance_of(way));
+    const auto keyframes = [&](std::size_t first, std::size_t last) {
+      return std::count(are.begin() + static_cast<std::ptrdiff_t>(first),
+                        are.begin() + static_cast<std::ptrdiff_t>(last), true);
+    };
+    EXPECT_EQ(keyframes(0, 100), 100);
+    EXPECT_LE(keyframes(100, 300), 16);
+    EXPECT_EQ(keyframes(300, 360), 60);
+  }
 }
 
 TEST(FrameSteps, AreTheFramesWhereEachIsOne) {

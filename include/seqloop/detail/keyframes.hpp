@@ -14,7 +14,8 @@
 namespace seqloop {
 
 /// Which frames of a drive are keyframes: those that sequences are made of. A frame that shows
-/// hardly anything new beside what usually is new is none: the robot stands. Where frames follow
+/// hardly anything new beside what usually is new is none: the robot stands. So it does where much
+/// is new, but no more than since long ago: that is noise. Where frames follow
 /// each other so closely that the scene hardly changes from one to the next, only those are that
 /// look unlike the last one. A drive that closes loops keeps to that once it was so: its places
 /// were taken so. So a faster camera, a slower robot and one that stands show the same sequence.
@@ -30,10 +31,11 @@ class Keyframes {
     return 2 * most_apart * (sequence_length + 1);
   }
 
-  /// Allocates: from the arena only, 8 bytes a feature.
+  /// Allocates: from the arena only, 12 bytes a feature.
   Keyframes(Arena& arena, std::size_t descriptor_size)
       : last_(arena.take<float>("last keyframe", descriptor_size)),
-        last_change_(arena.take<float>("last frame that looked new", descriptor_size)) {}
+        last_change_(arena.take<float>("last frame that looked new", descriptor_size)),
+        earlier_(arena.take<float>("keyframe of some time ago", descriptor_size)) {}
 
   /// Another drive begins, of which nothing is known.
   void begin() noexcept {
@@ -44,6 +46,9 @@ class Keyframes {
     hidden_ = 0;
     usually_new_ = Usual(new_at_first);
     since_cut_ = settled_after;
+    keyframes_ = 0;
+    since_earlier_ = renewed_after;
+    still_in_a_row_ = 0;
     std::ranges::fill(last_change_, 0.0F);
     last_is_change_ = true;
   }
@@ -58,20 +63,26 @@ class Keyframes {
 
   /// Takes the next frame. @param variance of all features together
   /// @return whether it is a keyframe
-  /// Work: 2 D. Allocates: never.
+  /// Work: 3 D. Allocates: never.
   bool take(std::span<const float> descriptor, double variance) noexcept {
     const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense_;
     const double from_change = squared_distance(last_change_, descriptor);
     const double differs = last_is_change_ ? from_change : squared_distance(last_, descriptor);
     const bool changed = take_change(from_change, unrelated);
-    const bool is_keyframe =
-        was_dense ? changed : differs > stands * usually_new_.mean() * unrelated;
+    const bool is_keyframe = was_dense ? changed
+                                       : differs > stands * usually_new_.mean() * unrelated &&
+                                             !shows_only_noise(descriptor, differs, unrelated);
     keep(descriptor, changed, is_keyframe);
     if (!is_keyframe) return false;
     const double is_new = std::min(differs, unrelated);
     if (unrelated > 0.0) usually_new_.take(is_new / unrelated);
     since_cut_ = is_new < cut * unrelated ? since_cut_ + 1 : 0;
+    ++keyframes_;
+    if (++since_earlier_ >= renewed_after) {
+      since_earlier_ = 0;
+      std::ranges::copy(descriptor, earlier_.begin());
+    }
     return true;
   }
 
@@ -98,6 +109,22 @@ class Keyframes {
   [[nodiscard]] bool is_dense() const noexcept { return is_dense_; }
 
  private:
+  /// Whether the last frames were all as unlike the last keyframe as one of some time ago. A robot
+  /// that drives on looks ever less like that. @param differs squared distance of the last one
+  /// @param unrelated of two frames that have nothing to do with each other
+  bool shows_only_noise(std::span<const float> descriptor, double differs,
+                        double unrelated) noexcept {
+    const bool some_time_ago = keyframes_ >= before_noise_is_known && since_earlier_ >= some_time &&
+                               since_earlier_ < renewed_after;
+    const double alike = unrelated - differs;
+    const bool still = some_time_ago && differs < still_alike * unrelated &&
+                       unrelated - squared_distance(earlier_, descriptor) >= as_alike * alike &&
+                       (still_in_a_row_ == 0 || alike >= goes_on * usually_alike_);
+    still_in_a_row_ = still ? still_in_a_row_ + 1 : 0;
+    if (still) usually_alike_ += (alike - usually_alike_) / static_cast<double>(still_in_a_row_);
+    return still_in_a_row_ >= in_a_row;
+  }
+
   /// Whether a frame looks unlike the last that did. @param differs squared distance of the two
   /// @param unrelated of two frames that have nothing to do with each other
   bool take_change(double differs, double unrelated) noexcept {
@@ -148,6 +175,16 @@ class Keyframes {
 
   // Less than this share of what is usually new is nothing.
   static constexpr double stands = 0.15;
+  // Noise is what is new since so many keyframes ago, too, until so many; so much alike, at so many
+  // frames in a row. Less than so much may be alike by chance.
+  static constexpr std::uint64_t some_time = 8;
+  static constexpr std::uint64_t renewed_after = 17;
+  static constexpr double as_alike = 0.95;
+  static constexpr std::uint64_t in_a_row = 6;
+  static constexpr double goes_on = 0.85;  // with less of what was alike in that row
+  // What all frames show alike is not standardised yet in the first ones.
+  static constexpr std::uint64_t before_noise_is_known = 40;
+  static constexpr double still_alike = 0.6;
   static constexpr double apart_at_first = 1.0;
   static constexpr double changes_at_first = 5.0;  // as if seen
   static constexpr double new_at_first = 0.1;
@@ -172,9 +209,14 @@ class Keyframes {
   Usual usually_apart_{apart_at_first, changes_at_first};  // frames from one change to the next
   Usual usually_new_{new_at_first};          // so new is a keyframe beside the one before it
   std::uint64_t since_cut_ = settled_after;  // keyframes
-  bool last_is_change_ = true;               // then the last keyframe is kept as the last change
-  std::span<float> last_;                    // [D]
-  std::span<float> last_change_;             // [D]
+  std::uint64_t keyframes_ = 0;
+  std::uint64_t since_earlier_ = renewed_after;  // keyframes
+  double usually_alike_ = 0.0;                   // in the row below
+  std::uint64_t still_in_a_row_ = 0;             // frames
+  bool last_is_change_ = true;    // then the last keyframe is kept as the last change
+  std::span<float> last_;         // [D]
+  std::span<float> last_change_;  // [D]
+  std::span<float> earlier_;      // [D]
 };
 
 }  // namespace seqloop
