@@ -103,7 +103,7 @@ class LastingMap {
   /// @param counted the frame, as the detector counts; @param index as its source does
   /// @param image its picture, where there is one
   /// @param readable whether it has a descriptor that is not blank; until one has, nothing is saved
-  /// Allocates: never; no system call.
+  /// Allocates: never; no system call, but where `MapSettings::waits` says so.
   virtual void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
                     const Image& image, std::span<const Answer> answers,
                     bool readable) noexcept = 0;

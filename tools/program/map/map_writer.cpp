@@ -91,7 +91,7 @@ void MapWriter::note(Detector& detector, std::uint64_t counted, std::uint64_t in
   add_places(image);
   if (counted_ > settled_after_) settle(counted_ - settled_after_);
   hand_over_statistics(detector);
-  if (waits_ && readable) wait_for_the_disk();
+  if (waits_ && readable_.load(std::memory_order_relaxed)) wait_for_the_disk();
   const std::uint64_t done = std::min(saved_places_.load(std::memory_order_acquire),
                                       read_places_.load(std::memory_order_acquire));
   const std::uint64_t needed = places_noted_.load(std::memory_order_relaxed) - done;
@@ -249,7 +249,11 @@ bool MapWriter::save() {
   saving_since_ns_.store(since, std::memory_order_relaxed);
   try {
     const std::uint64_t end = frames_.load(std::memory_order_acquire);
-    while (saved_frames_.load(std::memory_order_relaxed) < end || left() || words() > 0) {
+    const std::uint64_t places = places_noted_.load(std::memory_order_acquire);
+    // One frame may bring more places than a loop that waits for the disk lets be: it is not
+    // counted before they are saved.
+    while (saved_frames_.load(std::memory_order_relaxed) < end || saved_places() < places ||
+           left() || words() > 0) {
       save_once();
     }
     if (ending_) save_once();  // the last statistics

@@ -22,9 +22,10 @@
 namespace seqloop::program {
 
 /// Saves what a drive adds to a map, in a thread of its own. Places are in the map already: the
-/// thread follows how far they are, and reads them there, so that no frame waits for the disk and
-/// nothing queues up. Until a place is saved, a full map does not forget it; nor does it forget the
-/// newest ones that are, so that what goes does not depend on how far the thread is.
+/// thread follows how far they are, and reads them there, so that no frame waits for the disk, but
+/// where `MapSettings::waits` says so, and nothing queues up. Until a place is saved, a full map
+/// does not forget it; nor does it forget the newest ones that are, so that what goes does not
+/// depend on how far the thread is.
 class MapWriter {
  public:
   /// All of them live longer. @param encode makes thumbnails; null: there are none
@@ -45,7 +46,7 @@ class MapWriter {
   /// saved, since a full map's places would go for a drive that is discarded
   /// Work: log N and what the frame added, a thumbnail's pixels; every few times D copies.
   /// Allocates: never. No system call, no waiting: but where `MapSettings::waits` says so, until no
-  /// more than `kept` places are not saved yet.
+  /// more than `kept` places are not saved yet; unless the disk refuses, or stalls for two seconds.
   void note(Detector& detector, std::uint64_t counted, std::uint64_t index, double time_s,
             const Image& image, std::span<const Answer> answers, bool readable) noexcept;
 
@@ -71,7 +72,8 @@ class MapWriter {
   /// be saved, less those that they were to take the room of. Work: one pass over the former.
   [[nodiscard]] std::uint64_t lacking() const noexcept;
 
-  /// Saves soon. From any thread but the loop's: it may wait. @return false once the drive is over
+  /// Saves soon. From any thread but a camera's loop: it may wait. @return false once the drive is
+  /// over
   bool save_now();
 
   /// As `LastingMap::read_newest`. Work: D copies a place. Allocates: no.
@@ -114,7 +116,8 @@ class MapWriter {
   };
   enum class Handing : std::uint8_t { idle, asked, ready };
 
-  /// Newest places that a full map keeps: an eighth of it, 1024 at most.
+  /// Newest places that a full map keeps, and that need not be saved before a frame waits: an
+  /// eighth of it, 1 to 1024.
   [[nodiscard]] std::uint64_t kept() const noexcept;
   [[nodiscard]] static bool stalls(std::int64_t since_ns) noexcept;
   void wait_for_the_disk() noexcept;
