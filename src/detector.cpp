@@ -73,9 +73,10 @@ std::optional<double> usually_unlike(const PlaceMap& map, std::size_t apart) {
 /// it is a good part. What is alike beside it falls by the same share from row to row.
 std::optional<double> spacing_of(const PlaceMap& map) {
   constexpr double mostly = 0.7;
+  constexpr double something = 0.2;  // alike, or nobody can tell
   const std::optional<double> one = usually_unlike(map, 1);
   const std::optional<double> two = usually_unlike(map, 2);
-  if (!one || !two || *one >= 1.0) return one;
+  if (!one || !two || 1.0 - *one < something) return one;
   const double without = std::max(0.0, (*two - *one) / (1.0 - *one));
   return without < mostly * *one ? without : *one;
 }

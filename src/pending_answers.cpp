@@ -381,9 +381,12 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
       last_found_ = Found{frame, waiting.row};
     }
     if (grows_) continue;
-    const bool goes_on = before && frame > before->frame && before->row < map.size() &&
-                         knows_another_session(map, waiting, before->row + (frame - before->frame));
-    jump_rate_.take(map, frame, waiting.row, goes_on ? frame : began);
+    // One that another session may know, too, is no jump: the way from before is as good as
+    // unknown.
+    const bool is_hop =
+        before && frame > before->frame &&
+        hops_from(map, waiting, before->row, static_cast<std::size_t>(frame - before->frame));
+    jump_rate_.take(map, frame, waiting.row, is_hop ? frame : began);
   }
   // Frames from before a gap have all been answered now.
   oldest_before_ = oldest;
@@ -408,6 +411,13 @@ bool PendingAnswers::knows_another_session(const PlaceMap& map, const Waiting& w
   return std::ranges::any_of(lines, [&](const FoundLine& line) {
     return line.may_be_here && order.apart(line.row, row) <= own + 2 * frames_at_a_meeting;
   });
+}
+
+/// Whether a frame's place may be where another session leads from a row by so many rows.
+bool PendingAnswers::hops_from(const PlaceMap& map, const Waiting& waiting, std::size_t row,
+                               std::size_t by) noexcept {
+  return row < map.size() && row + by < map.order().around(row).last &&
+         knows_another_session(map, waiting, row + by);
 }
 
 /// Whether a frame beside this one was on a trace that goes through another place. Where the robot

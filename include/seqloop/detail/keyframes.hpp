@@ -67,6 +67,7 @@ class Keyframes {
   bool take(std::span<const float> descriptor, double variance) noexcept {
     const double unrelated = 2.0 * variance;
     const bool was_dense = is_dense_;
+    if (was_dense) still_in_a_row_ = 0;
     const double from_change = squared_distance(last_change_, descriptor);
     const double differs = last_is_change_ ? from_change : squared_distance(last_, descriptor);
     const bool changed = take_change(from_change, unrelated);

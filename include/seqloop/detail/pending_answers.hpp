@@ -196,6 +196,8 @@ class PendingAnswers {
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool knows_another_session(const PlaceMap& map, const Waiting& waiting,
                                            std::size_t row) noexcept;
+  [[nodiscard]] bool hops_from(const PlaceMap& map, const Waiting& waiting, std::size_t row,
+                               std::size_t by) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void look_at_windows(const PlaceMap& map, std::uint64_t newest,
                        std::span<BeliefTraces::Step> trace) noexcept;
