@@ -17,9 +17,8 @@ class JumpRate {
  public:
   /// Takes an accepted answer. Those of frames before one that was taken already are passed over.
   /// @param row    where the robot was, of the map
-  /// @param oldest frame that belongs together with it: the way from one before it is not known;
-  /// the
-  ///   frame itself, if that is to count as no jump
+  /// @param oldest frame that belongs together with it: the way from one before is not known.
+  ///   The frame itself, if that is to count as no jump
   /// Work: log sessions. Allocates: never.
   void take(const PlaceMap& map, std::uint64_t frame, std::size_t row,
             std::uint64_t oldest) noexcept;
