@@ -26,6 +26,10 @@ def lost(share: float, together: int, count: int, dice: Dice) -> np.ndarray:
     return np.flatnonzero(~np.repeat(runs, together)[:count])
 
 
+def every(step: int, count: int, _: Dice) -> np.ndarray:
+    return np.arange(0, count, step)
+
+
 def repeated(times: int, count: int, _: Dice) -> np.ndarray:
     return np.repeat(np.arange(count), times)
 
@@ -38,11 +42,11 @@ def hidden(length: int, count: int, dice: Dice) -> np.ndarray:
     return frames
 
 
-def turning_back(every: int, count: int, dice: Dice) -> np.ndarray:
+def turning_back(forwards: int, count: int, dice: Dice) -> np.ndarray:
     """Backwards for 10 to 30 frames each so many, and on."""
     frames: list[int] = []
-    for start in range(0, count, every):
-        stop = min(start + every, count)
+    for start in range(0, count, forwards):
+        stop = min(start + forwards, count)
         frames += range(start, stop)
         if stop < count:
             back = stop - int(dice.integers(10, 31))
@@ -68,6 +72,11 @@ def truth_of(way: np.ndarray, frames: np.ndarray, known: np.ndarray, near: int =
     return {i: np.flatnonzero(some <= near).tolist() for i, some in enumerate(apart)}
 
 
+def near_of(step: int) -> int:
+    """Of drives of every so many-th frame: five of these."""
+    return max(NEAR, NEAR * step // 2)
+
+
 def edited(query: str, reference: str, edit: Edit, draw: int):
     """Localising in the whole reference."""
     def make(maker: Maker):
@@ -77,7 +86,7 @@ def edited(query: str, reference: str, edit: Edit, draw: int):
     return make
 
 
-def edited_loop(first: str, second: str, edit: Edit, draw: int):
+def edited_loop(first: str, second: str, edit: Edit, draw: int, near: int = NEAR):
     """As one drive, either half by a draw of its own. What a robot comes back to at once is right,
     too, in the first half it is not asked for."""
     def make(maker: Maker):
@@ -85,7 +94,7 @@ def edited_loop(first: str, second: str, edit: Edit, draw: int):
         before, after = maker.real(first), maker.real(second)
         known, frames = edit(len(before), dice), edit(len(after), dice)
         whole = np.concatenate([known, frames])
-        right = truth_of(way, whole, whole)
+        right = truth_of(way, whole, whole, near)
         truth: Truth = {i: [] for i in range(len(known)) if min(right[i]) > i - NEWEST}
         truth |= {i: [place for place in right[i] if place < i]
                   for i in range(len(known), len(whole))}
@@ -93,12 +102,12 @@ def edited_loop(first: str, second: str, edit: Edit, draw: int):
     return make
 
 
-def between_the_maps(query: str, reference: str, step: int):
-    """Every so many-th frame, in a map of every so many-th, but of others."""
+def thinned_out(query: str, reference: str, step: int, first: int):
+    """Every so many-th frame from the first on, in a map of every so many-th from 0 on."""
     def make(maker: Maker):
         rows, places = maker.real(query), np.arange(0, len(maker.real(reference)), step)
-        frames = np.arange(step // 2, len(rows), step)
-        truth = truth_of(way_of(maker, query, reference), frames, places, NEAR * step // 2)
+        frames = np.arange(first, len(rows), step)
+        truth = truth_of(way_of(maker, query, reference), frames, places, near_of(step))
         return rows[frames], maker.real(reference)[places], truth
     return make
 
@@ -236,7 +245,12 @@ def hard_drives() -> list[Drive]:
         for seen, known in ((query, reference), (reference, query)):
             needs = (seen, known)
             for step in (2, 3, 4):
-                add(f"between-{step}-{base}", between_the_maps(seen, known, step), needs)
+                add(f"between-{step}-{base}", thinned_out(seen, known, step, step // 2), needs)
+            for step in (2, 3, 5, 8):
+                add(f"every-{step}-{base}", thinned_out(seen, known, step, 0), needs)
+                edit = functools.partial(every, step)
+                add(f"every-{step}-{base}-loop",
+                    edited_loop(known, seen, edit, 0, near_of(step)), needs)
             for share in (0.3, 0.5, 0.7):
                 for end in (False, True):
                     add(f"out-of-the-map-{base}", out_of_the_map(seen, known, share, end), needs)

@@ -91,7 +91,8 @@ class HardDrives(unittest.TestCase):
     def test_rows_and_truth_agree_where_it_localises(self) -> None:
         one = ("one", "other")
         for make in (hard_drives.edited(*one, functools.partial(hard_drives.lost, 0.3, 1), 2),
-                     hard_drives.between_the_maps(*one, 3),
+                     hard_drives.thinned_out(*one, 3, 1),
+                     hard_drives.thinned_out(*one, 2, 0),
                      hard_drives.hole_in_the_map(*one, 30, 3),
                      hard_drives.out_of_the_map(*one, 0.3, True),
                      hard_drives.another_way(*one, 20, 1),
