@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "seqloop/detail/keep_lowest.hpp"
+#include "seqloop/detail/kept_row.hpp"
 
 namespace seqloop {
 namespace {
@@ -267,14 +268,14 @@ void CandidateProposals::skip(const PlaceOrder& order, std::uint64_t frames) noe
 
 void CandidateProposals::removed(std::size_t row) noexcept {
   for (Alike& alike : remembered_.first(count_)) {
-    if (alike.row > row) --alike.row;
+    count_without(row, false, alike.row);
   }
-  if (next_ > row) --next_;
+  count_without(row, false, next_);
 }
 
 void CandidateProposals::inserted(std::size_t row) noexcept {
   for (Alike& alike : remembered_.first(count_)) {
-    if (alike.row >= row) ++alike.row;
+    count_with(row, alike.row);
   }
   if (next_ > row) ++next_;
 }

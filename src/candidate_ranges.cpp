@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "seqloop/detail/keep_lowest.hpp"
+#include "seqloop/detail/kept_row.hpp"
 
 namespace seqloop {
 namespace {
@@ -94,13 +95,13 @@ void CandidateRanges::restart() noexcept {
 
 void CandidateRanges::removed(std::size_t row) noexcept {
   for (ScoredRow& ranked : ranked_.first(ranked_count_)) {
-    if (ranked.row > row) --ranked.row;
+    count_without(row, false, ranked.row);
   }
 }
 
 void CandidateRanges::inserted(std::size_t row) noexcept {
   for (ScoredRow& ranked : ranked_.first(ranked_count_)) {
-    if (ranked.row >= row) ++ranked.row;
+    count_with(row, ranked.row);
   }
 }
 

@@ -50,7 +50,7 @@ std::size_t FirstFrames::follow(const PlaceMap& map, std::span<BeliefTraces::Ste
   std::size_t stays = 0;
   while (frame-- > 0 && at < trace.size()) {
     const Scene& scene = scenes_[frame];
-    const bool stays_at_first = row == session.first && scene.novelty > Scene::least_novelty;
+    const bool stays_at_first = row == session.first && scene.drives();
     if (stays_at_first && ++stays > most_stays) return count;
     FramePair frames{sketch(frame), std::nullopt};
     if (frame >= frames_apart) frames.before = sketch(frame - frames_apart);

@@ -45,10 +45,10 @@ bool leads_on(const PlaceMap& map, std::size_t from, std::size_t to, std::uint64
 }  // namespace
 
 void JumpRate::take(const PlaceMap& map, std::uint64_t frame, std::size_t row,
-                    std::uint64_t oldest) noexcept {
+                    std::uint64_t known_from) noexcept {
   if (row >= map.size() || (last_ && frame <= last_->frame)) return;
-  const bool goes_on = last_ && last_->frame >= oldest && last_->row < map.size();
-  if (goes_on && !leads_on(map, last_->row, row, frame - last_->frame)) ++jumps_;
+  const bool known = last_ && last_->frame >= known_from;
+  if (known && !leads_on(map, last_->row, row, frame - last_->frame)) ++jumps_;
   last_ = {frame, row};
   ++answers_;
 }

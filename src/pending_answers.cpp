@@ -80,8 +80,7 @@ bool PendingAnswers::accept_from(float least) noexcept {
 
 void PendingAnswers::add(std::uint64_t frame, bool readable, int moved) noexcept {
   forget_evidence();
-  at(frame) = {frame, true, readable, moved, false, false, 0,   0.0, 0.0, {0.0, 0.0}, {0.0, 0.0},
-               0,     1.0,  none,     0.0,   false, false, 0.0, 0.0, 0,   {}};
+  at(frame) = {.frame = frame, .waits = true, .readable = readable, .moved = moved};
   end_ = frame + 1;
 }
 
@@ -376,17 +375,11 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
     if (waiting.lines > 0) {
       accepted_.take(waiting.gain, waiting.novelty, margin(map, slot_of(frame), waiting.row));
     }
-    const std::optional<Found> before = last_found_;
     if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
       last_found_ = Found{frame, waiting.row};
     }
     if (grows_) continue;
-    // One that another session may know, too, is no jump: the way from before is as good as
-    // unknown.
-    const bool is_hop =
-        before && frame > before->frame &&
-        hops_from(map, waiting, before->row, static_cast<std::size_t>(frame - before->frame));
-    jump_rate_.take(map, frame, waiting.row, is_hop ? frame : began);
+    jump_rate_.take(map, frame, waiting.row, hops(map, waiting) ? frame : began);
   }
   // Frames from before a gap have all been answered now.
   oldest_before_ = oldest;
@@ -413,11 +406,13 @@ bool PendingAnswers::knows_another_session(const PlaceMap& map, const Waiting& w
   });
 }
 
-/// Whether a frame's place may be where another session leads from a row by so many rows.
-bool PendingAnswers::hops_from(const PlaceMap& map, const Waiting& waiting, std::size_t row,
-                               std::size_t by) noexcept {
-  return row < map.size() && row + by < map.order().around(row).last &&
-         knows_another_session(map, waiting, row + by);
+/// Whether a frame's place may be where another session leads from where the robot was before: then
+/// the way to it is as good as unknown.
+bool PendingAnswers::hops(const PlaceMap& map, const Waiting& waiting) noexcept {
+  const auto& before = jump_rate_.last();
+  if (!before || waiting.frame <= before->frame) return false;
+  const std::size_t row = before->row + static_cast<std::size_t>(waiting.frame - before->frame);
+  return row < map.order().around(before->row).last && knows_another_session(map, waiting, row);
 }
 
 /// Whether a frame beside this one was on a trace that goes through another place. Where the robot

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "seqloop/detail/kept_row.hpp"
 #include "seqloop/detail/portable_math.hpp"
 
 namespace seqloop {
@@ -145,18 +146,14 @@ std::size_t PlaceBelief::observe(const SceneView& view, double jumps) noexcept {
   const std::optional<std::size_t> led_to = std::exchange(expected_, std::nullopt);
   const double by_line = led_to && *led_to < view.rows ? where_it_leads * born : 0.0;
   const double each = (born - by_line) / static_cast<double>(view.seen->scanned().size());
-  // In a drive's own map what is believed less than a row that is found anew will be found again.
   std::array<Moves, most> moves;
   std::ranges::transform(rows_.first(count_), moves.begin(), [&](const Hypothesis& at) {
     return moves_of(view.map->order(), at, *scene, jumps);
   });
+  // In a drive's own map what is believed less than a row that is found anew will be found again.
   move(view.map->order(), moves, earlier_drives ? 0.0 : each);
-  double on = ended_.mass;
-  for (const Moved& moved : moved_.first(moved_count_)) on += moved.mass;
-  const double left = leaving * scene->novelty;
-  for (Moved& moved : moved_.first(moved_count_)) moved.mass *= 1.0 - left;
-  ended_.mass *= 1.0 - left;
-  new_place_ = new_place_ - born + left * on;
+  new_place_ -= born;
+  leave(leaving * scene->novelty);
   give_birth(view, each);
   if (by_line > 0.0) bear(*led_to, by_line);
   hand_over(*view.map);
@@ -242,6 +239,17 @@ void PlaceBelief::keep_likeliest() noexcept {
     moved_[kept++] = moved_[i];
   }
   moved_count_ = kept;
+}
+
+/// A share of the belief in rows goes to "somewhere new".
+void PlaceBelief::leave(double share) noexcept {
+  double on = ended_.mass;
+  for (Moved& moved : moved_.first(moved_count_)) {
+    on += moved.mass;
+    moved.mass *= 1.0 - share;
+  }
+  ended_.mass *= 1.0 - share;
+  new_place_ += share * on;
 }
 
 void PlaceBelief::give_birth(const SceneView& view, double mass) noexcept {
@@ -442,13 +450,19 @@ void PlaceBelief::normalise() noexcept {
 }
 
 bool PlaceBelief::is_likeliest_of_session(const PlaceMap& map, std::size_t row) const noexcept {
-  const CandidateRun session = map.order().around(row);
-  const Hypothesis* likeliest = nullptr;
-  for (const Hypothesis& at : rows_.first(count_)) {
-    if (at.row < session.first || at.row >= session.last) continue;
-    if (likeliest == nullptr || at.mass > likeliest->mass) likeliest = &at;
-  }
-  return likeliest != nullptr && map.same_place(row, likeliest->row);
+  const std::span<const Hypothesis> session = of_session(map.order(), row);
+  const auto likeliest = std::ranges::max_element(session, {}, &Hypothesis::mass);
+  return likeliest != session.end() && map.same_place(row, likeliest->row);
+}
+
+/// Those of the session that a row is of. Work: log of them and of sessions.
+std::span<PlaceBelief::Hypothesis> PlaceBelief::of_session(const PlaceOrder& order,
+                                                           std::size_t row) const noexcept {
+  const CandidateRun session = order.around(row);
+  const std::span<Hypothesis> rows = rows_.first(count_);
+  const auto first = std::ranges::lower_bound(rows, session.first, {}, &Hypothesis::row);
+  const auto last = std::ranges::lower_bound(rows, session.last, {}, &Hypothesis::row);
+  return {first, last};
 }
 
 void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps) noexcept {
@@ -462,32 +476,27 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps)
   const bool on_map = new_place_ <= half;
   double place = 0.0;
   std::optional<WrongRows::Row> other;
-  for (std::size_t first = 0; first < rows.size();) {
+  for (auto left = rows; !left.empty();) {
     // Another session may know the place, too: its likeliest row is no wrong one.
-    const std::size_t end = view.map->order().around(rows[first].row).last;
-    std::size_t last = first;
-    std::size_t best = first;
-    for (; last < rows.size() && rows[last].row < end; ++last) {
-      if (rows[last].mass > rows[best].mass) best = last;
-    }
-    for (; first < last; ++first) {
-      Hypothesis& at = rows[first];
+    const std::span<Hypothesis> session = of_session(view.map->order(), left.front().row);
+    const auto best = std::ranges::max_element(session, {}, &Hypothesis::mass);
+    left = left.subspan(session.size());
+    for (Hypothesis& at : session) {
       const bool same = view.map->same_place(at.row, top->row);
       // What a row gained while it was right says nothing about wrong ones.
       at.wrong = (1.0 - forgotten_by(scene.novelty)) * at.wrong + (same && on_map ? 0.0 : at.told);
       if (same) {
         place += at.mass;
         if (on_map) share_history(view.map->order(), *top, at);
-      } else if (!view.map->same_place(at.row, rows[best].row) &&
-                 (!other || at.wrong > other->sum)) {
+      } else if (!view.map->same_place(at.row, best->row) && (!other || at.wrong > other->sum)) {
         other = {at.row, at.wrong};
       }
     }
   }
   const auto index = static_cast<std::size_t>(top - rows.begin());
   if (on_map) know_better(*view.map, index);
-  wrong_.take({WrongRows::Row{top->row, top->wrong}, other, on_map,
-               scene.novelty > Scene::least_novelty ? scene.novelty : 0.0});
+  wrong_.take(
+      {WrongRows::Row{top->row, top->wrong}, other, on_map, scene.drives() ? scene.novelty : 0.0});
   constexpr double tiny = 1e-12;
   const double sure = std::clamp(place, tiny, 1.0 - tiny);
   // Less than that says no more.
@@ -629,20 +638,20 @@ void PlaceBelief::drift(const PlaceMap& map, bool is_step) noexcept {
 
 void PlaceBelief::removed(std::size_t row, bool forgotten) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
-    if (at.row > row) --at.row;
+    count_without(row, false, at.row);
   }
-  if (likeliest_ && likeliest_->row > row) --likeliest_->row;
-  if (expected_ && *expected_ > row) --*expected_;
+  if (likeliest_) count_without(row, false, likeliest_->row);
+  if (expected_) count_without(row, false, *expected_);
   traces_.removed(row, forgotten);
   wrong_.removed(row);
 }
 
 void PlaceBelief::inserted(std::size_t row) noexcept {
   for (Hypothesis& at : rows_.first(count_)) {
-    if (at.row >= row) ++at.row;
+    count_with(row, at.row);
   }
-  if (likeliest_ && likeliest_->row >= row) ++likeliest_->row;
-  if (expected_ && *expected_ >= row) ++*expected_;
+  if (likeliest_) count_with(row, likeliest_->row);
+  if (expected_) count_with(row, *expected_);
   traces_.inserted(row);
   wrong_.inserted(row);
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "seqloop/detail/kept_row.hpp"
+
 namespace seqloop {
 namespace {
 
@@ -26,6 +28,7 @@ RunnerUpHistory::RunnerUpHistory(Arena& arena, const MatcherConfig& config)
 
 std::optional<double> RunnerUpHistory::lowest(std::size_t best, std::size_t half_rwindow,
                                               std::size_t rows, CandidateRun among) const noexcept {
+  if (seen_.empty()) return std::nullopt;
   const std::size_t other_scans = (std::max<std::size_t>(rows, 1) - 1) / rows_a_scan_;
   const std::size_t frames = std::min(rounds * other_scans, seen_.size() / rows_a_frame);
   std::optional<double> lowest;
@@ -50,13 +53,13 @@ void RunnerUpHistory::remember(RunnerUp row) noexcept {
 
 void RunnerUpHistory::removed(std::size_t row) noexcept {
   for (Seen& seen : seen_) {
-    if (seen.row.row > row) --seen.row.row;
+    count_without(row, false, seen.row.row);
   }
 }
 
 void RunnerUpHistory::inserted(std::size_t row) noexcept {
   for (Seen& seen : seen_) {
-    if (seen.row.row >= row) ++seen.row.row;
+    count_with(row, seen.row.row);
   }
 }
 

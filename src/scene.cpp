@@ -24,9 +24,12 @@ struct News {
 News news_of(const SceneView& view, double mean, std::size_t& sketches) {
   constexpr double power = 0.7;
   constexpr double highest = 0.5;
-  const auto weight = [](double change) { return exponential(power * logarithm(change)); };
+  const auto weighed = [](double change, double gone) {
+    const double weight = exponential(power * logarithm(change));
+    return News{weight, weight * gone};
+  };
   const std::uint64_t frames = view.newest - view.oldest;
-  if (frames == 0) return {weight(highest), weight(highest)};
+  if (frames == 0) return weighed(highest, 1.0);
   const DescriptorRows& queries = view.queries->rows();
   const auto squared = [&](std::size_t back) {
     return squared_way(queries, view.queries->row_of(view.newest),
@@ -45,7 +48,7 @@ News news_of(const SceneView& view, double mean, std::size_t& sketches) {
         squared(static_cast<std::size_t>(std::min<std::uint64_t>(SceneGauge::reach, frames)));
     gone = std::clamp((earlier - before) / (0.5 * (mu - before)), 0.0, 1.0);
   }
-  return {weight(change), weight(change) * gone};
+  return weighed(change, gone);
 }
 
 }  // namespace
@@ -56,7 +59,7 @@ SceneGauge::SceneGauge(Arena& arena, bool used)
 
 std::optional<Scene> SceneGauge::look(const SceneView& view, std::size_t& sketches) noexcept {
   const std::span<const std::uint32_t> bits = view.seen->scanned();
-  if (view.rows < least_rows || bits.size() < std::min(least_rows, view.rows)) return std::nullopt;
+  if (view.rows < least_rows) return std::nullopt;
   std::ranges::fill(histogram_, 0U);
   for (const std::uint32_t b : bits) ++histogram_[b];
   const auto any = [](std::uint32_t count) { return count > 0; };

@@ -605,6 +605,15 @@ TEST(Detector, RefusesAMapThatDoesNotFitItsUse) {
                          "or let it close loops (close_loops)"));
 }
 
+TEST(Detector, NeedsNoRowsToScanWhereNoneAreScanned) {
+  MatcherConfig config = paper(Candidates::all, 20, Use::localise);
+  config.relocalising = {.on = false, .rows_scanned = 0};
+  ASSERT_TRUE(validate(config).empty());
+  const oracle::Vectors places = oracle::drive(3, 60, 12);
+  const std::vector<FrameReport> found = reports(places, places, config);
+  EXPECT_EQ(found.back().match->place, 49U);
+}
+
 TEST(Detector, TakesAMapThatStandardisesWithoutHavingLearntTheDrive) {
   MatcherConfig config = paper(Candidates::all, 5);
   config.standardisation.on = true;

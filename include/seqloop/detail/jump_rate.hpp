@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "seqloop/detail/kept_row.hpp"
 #include "seqloop/place_map.hpp"
 
 namespace seqloop {
@@ -17,11 +18,19 @@ class JumpRate {
  public:
   /// Takes an accepted answer. Those of frames before one that was taken already are passed over.
   /// @param row    where the robot was, of the map
-  /// @param oldest frame that belongs together with it: the way from one before is not known.
-  ///   The frame itself, if that is to count as no jump
+  /// @param known_from the first frame from which the way to this one is known
   /// Work: log sessions. Allocates: never.
   void take(const PlaceMap& map, std::uint64_t frame, std::size_t row,
-            std::uint64_t oldest) noexcept;
+            std::uint64_t known_from) noexcept;
+
+  /// Where the robot was found.
+  struct Found {
+    std::uint64_t frame;
+    std::size_t row;
+  };
+
+  /// By the answer that was taken last; none: there was none.
+  [[nodiscard]] const std::optional<Found>& last() const noexcept { return last_; }
 
   /// The chance that the robot is carried away with a frame, 0 .. 0.5: 0 where it never was, else
   /// 14 times as often as it was seen to be. Windows overlap, so that frames on either side of a
@@ -30,16 +39,11 @@ class JumpRate {
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept {
-    if (last_ && last_->row >= row) ++last_->row;
+    if (last_) count_with(row, last_->row);
   }
 
  private:
-  struct Last {
-    std::uint64_t frame;
-    std::size_t row;
-  };
-
-  std::optional<Last> last_;
+  std::optional<Found> last_;
   std::uint64_t answers_ = 0;
   std::uint64_t jumps_ = 0;
 };

@@ -10,6 +10,7 @@
 #include "seqloop/detail/arena.hpp"
 #include "seqloop/detail/frame_steps.hpp"
 #include "seqloop/detail/jump_rate.hpp"
+#include "seqloop/detail/kept_row.hpp"
 #include "seqloop/detail/place_belief.hpp"
 #include "seqloop/detail/trace_span.hpp"
 #include "seqloop/detail/trajectories.hpp"
@@ -143,27 +144,27 @@ class PendingAnswers {
     double log_ratio;
   };
   struct Waiting {
-    std::uint64_t frame;
-    bool waits;
-    bool readable;
-    int moved;              // to the side
-    bool believed;          // whether it lies on a trace
-    bool left;              // by the trace of the newest frame that was looked back from
-    std::size_t row;        // there
-    double right;           // that the trace is right: the most that was ever said
-    double same_place;      // the same, with nothing asked besides
-    TraceSpan::On on;       // that the frame lies on it
-    TraceSpan::On carried;  // the same, if the robot is carried away as often as it was
-    std::uint64_t lag;      // frames that had come after it when it was looked back on last
-    double new_place;       // belief in none, as it came
-    std::size_t likeliest;  // row, as it came; `none` where there was none
-    double doubt;           // whether the robot was still there, as it came
-    bool doubted;           // it has risen too much since
-    bool shown;             // whether it by itself shows the row
-    double gain;            // there, as `BeliefTraces::Step` has it
-    double novelty;         // as it came
-    std::size_t lines;      // found
-    Lead lead;              // that `margin` took the logarithm of last
+    std::uint64_t frame = 0;
+    bool waits = false;
+    bool readable = false;
+    int moved = 0;            // to the side
+    bool believed = false;    // whether it lies on a trace
+    bool left = false;        // by the trace of the newest frame that was looked back from
+    std::size_t row = 0;      // there
+    double right = 0.0;       // that the trace is right: the most that was ever said
+    double same_place = 0.0;  // the same, with nothing asked besides
+    TraceSpan::On on{};       // that the frame lies on it
+    TraceSpan::On carried{};  // the same, if the robot is carried away as often as it was
+    std::uint64_t lag = 0;    // frames that had come after it when it was looked back on last
+    double new_place = 1.0;   // belief in none, as it came
+    std::size_t likeliest = gone<std::size_t>;  // row, as it came; `none` where there was none
+    double doubt = 0.0;                         // whether the robot was still there, as it came
+    bool doubted = false;                       // it has risen too much since
+    bool shown = false;                         // whether it by itself shows the row
+    double gain = 0.0;                          // there, as `BeliefTraces::Step` has it
+    double novelty = 0.0;                       // as it came
+    std::size_t lines = 0;                      // found
+    Lead lead{};                                // that `margin` took the logarithm of last
   };
 
   /// What a trace that came through a frame says of it.
@@ -196,8 +197,7 @@ class PendingAnswers {
   [[nodiscard]] double told(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] bool knows_another_session(const PlaceMap& map, const Waiting& waiting,
                                            std::size_t row) noexcept;
-  [[nodiscard]] bool hops_from(const PlaceMap& map, const Waiting& waiting, std::size_t row,
-                               std::size_t by) noexcept;
+  [[nodiscard]] bool hops(const PlaceMap& map, const Waiting& waiting) noexcept;
   [[nodiscard]] double margin(const PlaceMap& map, std::size_t slot, std::size_t row) noexcept;
   void look_at_windows(const PlaceMap& map, std::uint64_t newest,
                        std::span<BeliefTraces::Step> trace) noexcept;

@@ -48,7 +48,7 @@ class PlaceBelief {
   /// on the map again: `PendingAnswers::chance_of_return`
   /// @return pairs of sketches compared
   /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
-  std::size_t observe(const SceneView& view, double jumps = 0.0) noexcept;
+  std::size_t observe(const SceneView& view, double jumps) noexcept;
 
   /// Takes in where the newest window's best line leads: it is born there with the next frame, if
   /// the line stands out. @param uniqueness as `Match` has it; NaN: nothing is known of it
@@ -100,7 +100,7 @@ class PlaceBelief {
   /// That the robot is somewhere new, 0 .. 1.
   [[nodiscard]] double new_place() const noexcept { return new_place_; }
 
-  /// Whether a row is one place with the likeliest one of its session. Work: the hypotheses.
+  /// Whether a row is one place with the likeliest one of its session. Work: its hypotheses.
   [[nodiscard]] bool is_likeliest_of_session(const PlaceMap& map, std::size_t row) const noexcept;
 
   /// The way that a row was come by: see `BeliefTraces`.
@@ -174,6 +174,7 @@ class PlaceBelief {
                                              const Hypothesis& at) noexcept;
   void move(const PlaceOrder& order, std::span<const Moves> moves, double least) noexcept;
   void keep_likeliest() noexcept;
+  void leave(double share) noexcept;
   void give_birth(const SceneView& view, double mass) noexcept;
   void bear(std::size_t row, double mass) noexcept;
   void hand_over(const PlaceMap& map) noexcept;
@@ -185,6 +186,8 @@ class PlaceBelief {
   [[nodiscard]] Shown shown_best(const PlaceMap& map, std::span<const double> gains) const noexcept;
   void normalise() noexcept;
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
+  [[nodiscard]] std::span<Hypothesis> of_session(const PlaceOrder& order,
+                                                 std::size_t row) const noexcept;
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
   [[nodiscard]] bool is_of_this_drive(const PlaceOrder& order, std::size_t row) const noexcept;

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "seqloop/detail/kept_row.hpp"
+
 namespace seqloop {
 
 /// How well the best wrong rows of a drive do, learnt as it goes. Which rows are wrong is guessed
@@ -44,12 +46,12 @@ class WrongRows {
 
   /// A row went from the map: those behind it are counted one lower.
   void removed(std::size_t row) noexcept {
-    for_each_row([row](std::size_t& at) { at -= static_cast<std::size_t>(at > row); });
+    for_each_row([row](std::size_t& at) { count_without(row, false, at); });
   }
 
   /// A row came into the map: those from it on are counted one higher.
   void inserted(std::size_t row) noexcept {
-    for_each_row([row](std::size_t& at) { at += static_cast<std::size_t>(at >= row); });
+    for_each_row([row](std::size_t& at) { count_with(row, at); });
   }
 
   /// How far a sum lies above the best wrong ones, in their deviations.

@@ -58,7 +58,7 @@ void open_map(RunSetup& setup, const RunSettings& settings, const DriveSettings&
   collect(faults, [&] {
     const bool pictures = setup.describer != nullptr;
     MapSettings of_map = settings.map;
-    of_map.waits = setup.live == nullptr && settings.pace != Pace::live;
+    of_map.waits = !setup.paced;
     setup.map = open_map(of_map, setup.config, setup.descriptor_size,
                          pictures ? fingerprint(drive) : "descriptors", pictures ? jpeg : nullptr);
   });
@@ -150,6 +150,7 @@ std::optional<std::uint64_t> RunSetup::frame_count(std::size_t wanted) const noe
 
 RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
   RunSetup setup;
+  setup.paced = is_live(settings.source) || settings.pace == Pace::live;
   open_outputs(setup, settings, faults);
   const bool lasts = !settings.map.file.empty();
   const bool closing = settings.reference.empty() && !settings.map.read_only;
@@ -170,7 +171,7 @@ RunSetup set_up(const RunSettings& settings, Faults faults, Clock& clock) {
                       "leave --pace live or --pictures out"});
   }
   check_camera(settings.camera, settings.source, faults);
-  if (settings.give_up_s > 0.0 && !is_live(settings.source) && settings.pace != Pace::live) {
+  if (settings.give_up_s > 0.0 && !setup.paced) {
     faults.push_back(
         {"give-up-s", "it goes with a camera, and the source is none", "leave it out"});
   }

@@ -61,6 +61,7 @@ struct RunSetup {
   std::shared_ptr<dds::Participant> ros;   ///< none unless something of ROS 2 is asked for
   std::unique_ptr<FrameSource> recording;  ///< none when the source is a camera or a topic
   std::unique_ptr<live::LiveSource> live;  ///< a camera, or the recording at its own pace
+  bool paced = false;                      ///< frames come at their own time, not when asked for
   std::string capture;                     ///< the camera and its mode; empty for others
   /// When the drive's second 0 was, in nanoseconds since 1970; of a topic, once a frame has come.
   /// Where its clock was set back, by the clock as it is now.

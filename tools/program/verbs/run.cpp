@@ -173,12 +173,12 @@ void run(const RunSettings& settings, Faults faults) {
   memory.wait();
   working_memory.wait();
   Detector detector(setup.config, map, working_memory.span());
-  RunSummary summary(setup.budget, setup.live || settings.pace == Pace::live);
+  RunSummary summary(setup.budget, setup.paced);
   OverloadWatch overload(setup.overload);
   PictureRecorder recorder(setup.config.difference);
   std::vector<float> query(map.rows().restored_size());
   Progress progress("running", setup.frame_count(settings.frames));
-  TroubleLog trouble(progress, setup.live || settings.pace == Pace::live);
+  TroubleLog trouble(progress, setup.paced);
   std::unique_ptr<Fleet> fleet;
   if (!settings.fleet.name.empty()) {
     MatcherConfig config = setup.config;
@@ -207,7 +207,7 @@ void run(const RunSettings& settings, Faults faults) {
       setup, [&] { return SourceNumbers(setup.config, setup.own_places ? &map : nullptr); });
   FrameLines::More of_others;
   if (fleet) of_others = [&fleet](nlohmann::ordered_json& frame) { fleet->add_to(frame); };
-  FrameLines lines(*setup.out, setup.live != nullptr, setup.map.get(), of_others);
+  FrameLines lines(*setup.out, setup.paced, setup.map.get(), of_others);
   std::uint64_t blank_frames = 0;
   std::uint64_t next_frame = 0;
   bool map_full = false;
