@@ -513,17 +513,23 @@ std::optional<FoundLine> PendingAnswers::line_near(const PlaceMap& map,
   return std::nullopt;
 }
 
-/// Whether the trace goes through the whole window of a frame.
+/// Whether the trace goes through the whole window of a frame, and no slower than lines do: where
+/// the robot passes far fewer places a frame, as in a map of every fifth one, no line knows the
+/// row.
 bool PendingAnswers::lies_on_trace(const PlaceOrder& order, std::uint64_t frame) noexcept {
   const std::uint64_t before = trajectories_->centre();
   if (frame < before) return false;
   constexpr double half = 0.5;
+  constexpr double slower = 0.05;
   const Waiting& first = at(frame - before);
   const Waiting& last = at(frame + after_centre_);
-  // From 0 to 2 rows a frame, as the belief moves.
+  const std::uint64_t frames = before + after_centre_;
+  const double least = (trajectories_->velocity(0) - slower) * static_cast<double>(frames);
+  // Up to 2 rows a frame, as the belief moves.
   return first.frame == frame - before && last.frame == frame + after_centre_ && first.believed &&
          last.believed && std::min(probability(first), probability(last)) > half &&
-         first.row <= last.row && order.apart(first.row, last.row) <= 2 * (before + after_centre_);
+         first.row <= last.row && order.apart(first.row, last.row) <= 2 * frames &&
+         static_cast<double>(last.row - first.row) >= least;
 }
 
 /// Whether no place on a line has been thinned out.

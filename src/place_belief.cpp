@@ -565,8 +565,10 @@ double PlaceBelief::usual_gain() const noexcept {
 
 double PlaceBelief::remember(double odds) noexcept {
   constexpr double too_much = 3.0;
+  constexpr double half = 0.5;
+  const bool has_left = localises_ ? new_place_ > half : likeliest_->evidence.doubt > too_much;
   // Other visits of the place have had it from this row.
-  if (!localises_ && likeliest_->evidence.doubt > too_much) {
+  if (has_left) {
     for (Hypothesis& at : rows_.first(count_)) at.past = std::min(at.past, odds);
   }
   double& past = rows_[likeliest_->index].past;

@@ -186,7 +186,7 @@ class NaiveBelief {
     // 6.4, `best`
     const double here = remembered(evidence);
     double& past = rows_.at(likeliest).past;
-    if (!localises_ && evidence.doubt > 3.0) {
+    if (localises_ ? new_place > 0.5 : evidence.doubt > 3.0) {
       for (auto& [row, at] : rows_) at.past = std::min(at.past, here);
     }
     past = std::max(past, here);

@@ -156,6 +156,30 @@ TEST(PlaceBelief, ClosesLoopsAtAnotherPaceThanBefore) {
   }
 }
 
+/// No line of .8 rows a frame and more knows where on such a map a robot is.
+TEST(PlaceBelief, NamesThePlaceInAMapOfEveryFifthOrEighth) {
+  for (const double step : {5.0, 8.0}) {
+    for (const float noise : {0.5F, 2.0F}) {
+      std::size_t found = 0;
+      std::size_t off = 0;
+      for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+        const oracle::Vectors map = thinned(way(seed, 800, noise, 1), step);
+        const oracle::Vectors query = way(seed, 800, noise, 2);
+        for (const Answer& answer : drive_through(map, query, settings(Use::localise)).answers) {
+          if (answer.gate != Gate::match) continue;
+          ++found;
+          const double is = static_cast<double>(answer.frame) / step;
+          if (std::abs(static_cast<double>(answer.match->place) - is) > 1.5) ++off;
+        }
+      }
+      std::printf("every %.0fth, noise %.1f: %zu found, %zu of them off\n", step,
+                  static_cast<double>(noise), found, off);
+      EXPECT_GT(found, 4700U);
+      EXPECT_LT(off, found / 50);
+    }
+  }
+}
+
 /// Frames far from each other, taken half way between those of the map: they gain little, though
 /// they are right.
 TEST(PlaceBelief, FindsFramesThatWereTakenBetweenThoseOfTheMap) {
