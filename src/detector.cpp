@@ -364,6 +364,7 @@ std::span<const Answer> Detector::finish() noexcept {
   if (!told_.empty() && end > 0) tell(report, pending_.answers());
   restart();
   shift_.begin();
+  keyframes_.begin();
   // Frames that do not come before the next one are none of what has ended.
   skipped_ = config_.sequence_length + 1;
   pending_.forget_drive();

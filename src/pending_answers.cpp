@@ -468,7 +468,7 @@ double PendingAnswers::told(const PlaceMap& map, const Waiting& waiting) noexcep
 /// @param began the first frame that belongs together with those that are answered
 bool PendingAnswers::may_be_new(const PlaceMap& map, std::uint64_t began) const noexcept {
   return !PlaceBelief::has_earlier_drives(!grows_, map.order()) ||
-         end_ - began > trajectories_->window();
+         end_ - began >= trajectories_->window();
 }
 
 void PendingAnswers::give(PlaceMap& map, const FrameSteps& steps, Waiting& waiting,

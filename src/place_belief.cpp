@@ -267,7 +267,7 @@ void PlaceBelief::bear(std::size_t row, double mass) noexcept {
   const auto known = moved_.first(moved_count_);
   const auto place = std::ranges::lower_bound(known, row, {}, &Moved::row);
   if (place != known.end() && place->row == row) {
-    place->share = place->mass / (place->mass + mass);
+    place->share *= place->mass / (place->mass + mass);
     place->mass += mass;
     return;
   }

@@ -146,7 +146,10 @@ double in_step(const Scene& scene, const PlaceMap& map, const FramePair& frames,
   const double apart = squared_chord(scene.mean);
   const double together = squared_chord(at.here) + squared(*frames.before);
   const double across = squared_chord(at.before) + squared(frames.newest);
-  const double along = (across - together) / (2.0 * std::max(frames.way, 0.3 * apart));
+  // Beyond that only where hardly any bits of any rows differ.
+  constexpr double most = 4.0;
+  const double along =
+      std::clamp((across - together) / (2.0 * std::max(frames.way, 0.3 * apart)), -most, most);
   const double alike = std::max(0.0, 1.0 - together / (2.0 * apart));
   return along - 0.4 * alike - std::min(0.06, 0.25 * alike);
 }

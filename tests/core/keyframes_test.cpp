@@ -297,6 +297,20 @@ TEST(Keyframes, GoByTheMapThatTheyAreMatchedWith) {
   EXPECT_LT(std::ranges::count(keyframes_of(slow, variance, 0.5), true), 2 * all / 3);
 }
 
+TEST(Keyframes, OfADriveDoNotDependOnOneThatHasEnded) {
+  const MatcherConfig config{.use = Use::close_loops};
+  const Vectors dense = test::slowly(test::way(3, 150, 0.0F, 1), 5, 1);
+  const Vectors fast = test::way(9, 300, 0.0F, 1, dense.front().size(), 0.92F);
+  PlaceMap map(config, {dense.size() + fast.size(), dense.front().size()});
+  Detector detector(config, map);
+  for (const auto& seen : dense) static_cast<void>(detector.step(seen));
+  static_cast<void>(detector.finish());
+  const std::size_t before = map.size();
+  EXPECT_LT(before, dense.size() / 2);
+  for (const auto& seen : fast) static_cast<void>(detector.step(seen));
+  EXPECT_EQ(map.size() - before, fast.size());
+}
+
 TEST(Keyframes, GoByWhatTellsPlacesApartAndNotByTheSnowThatFellThere) {
   // Each frame of the drive is one of the map's; half of what the map shows is snow.
   MatcherConfig config;
