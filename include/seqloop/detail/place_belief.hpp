@@ -47,7 +47,7 @@ class PlaceBelief {
   /// Takes the newest frame. @param jumps the chance that the robot was carried away with it and is
   /// on the map again: `PendingAnswers::chance_of_return`
   /// @return pairs of sketches compared
-  /// Work: `most_sketches`, and 2^11 exponentials at most. Allocates: never.
+  /// Work: `most_sketches`, and two exponentials for each hypothesis. Allocates: never.
   std::size_t observe(const SceneView& view, double jumps) noexcept;
 
   /// Takes in where the newest window's best line leads: it is born there with the next frame, if

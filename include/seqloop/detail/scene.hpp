@@ -132,7 +132,7 @@ class SceneGauge {
 
   /// @param sketches grows by the pairs compared
   /// @return none with too few rows to tell
-  /// Work: as many exponentials as sketches have bits at most. Allocates: never.
+  /// Work: the rows scanned, and 4 exponentials. Allocates: never.
   [[nodiscard]] std::optional<Scene> look(const SceneView& view, std::size_t& sketches) noexcept;
 
  private:
