@@ -376,7 +376,7 @@ void PendingAnswers::answer(PlaceMap& map, const FrameSteps& steps, std::uint64_
       accepted_.take(waiting.gain, waiting.novelty, margin(map, slot_of(frame), waiting.row));
     }
     if (frame >= oldest && (!last_found_ || frame > last_found_->frame)) {
-      last_found_ = Found{frame, waiting.row};
+      last_found_ = JumpRate::Found{frame, waiting.row};
     }
     if (grows_) continue;
     jump_rate_.take(map, frame, waiting.row, hops(map, waiting) ? frame : began);

@@ -472,8 +472,7 @@ void PlaceBelief::judge(const SceneView& view, const Scene& scene, double jumps)
     wrong_.take({});
     return;
   }
-  constexpr double half = 0.5;
-  const bool on_map = new_place_ <= half;
+  const bool on_map = is_on_map();
   double place = 0.0;
   std::optional<WrongRows::Row> other;
   for (auto left = rows; !left.empty();) {
@@ -565,8 +564,7 @@ double PlaceBelief::usual_gain() const noexcept {
 
 double PlaceBelief::remember(double odds) noexcept {
   constexpr double too_much = 3.0;
-  constexpr double half = 0.5;
-  const bool has_left = localises_ ? new_place_ > half : likeliest_->evidence.doubt > too_much;
+  const bool has_left = localises_ ? !is_on_map() : likeliest_->evidence.doubt > too_much;
   // Other visits of the place have had it from this row.
   if (has_left) {
     for (Hypothesis& at : rows_.first(count_)) at.past = std::min(at.past, odds);

@@ -58,10 +58,9 @@ def turning_back(forwards: int, count: int, dice: Dice) -> np.ndarray:
 def way_of(maker: Maker, one: str, other: str) -> np.ndarray:
     """How far a robot is at a frame, in frames in which it moves: where both drives hardly change
     for some frames it stands, and is at one place."""
-    still = np.ones(len(maker.real(one)) - 1, bool)
-    for drive in (one, other):
-        change = np.linalg.norm(np.diff(maker.real(drive), axis=0), axis=1)
-        still &= change < 0.5 * np.median(change)
+    changes = [np.linalg.norm(np.diff(maker.real(drive), axis=0), axis=1)
+               for drive in (one, other)]
+    still = np.all([change < 0.5 * np.median(change) for change in changes], axis=0)
     stands = np.convolve(np.convolve(still, np.ones(5), "full") == 5, np.ones(5), "valid") > 0
     return np.append(0, np.cumsum(~stands))
 
@@ -70,6 +69,11 @@ def truth_of(way: np.ndarray, frames: np.ndarray, known: np.ndarray, near: int =
     """Of each frame the rows that are right: all that are near on the way."""
     apart = np.abs(way[frames][:, None] - way[known])
     return {i: np.flatnonzero(some <= near).tolist() for i, some in enumerate(apart)}
+
+
+def after_new(new: int, truth: Truth) -> Truth:
+    """Of a drive that begins with so many new frames."""
+    return {i: [] for i in range(new)} | {new + i: places for i, places in truth.items()}
 
 
 def near_of(step: int) -> int:
@@ -105,10 +109,10 @@ def edited_loop(first: str, second: str, edit: Edit, draw: int, near: int = NEAR
 def thinned_out(query: str, reference: str, step: int, first: int):
     """Every so many-th frame from the first on, in a map of every so many-th from 0 on."""
     def make(maker: Maker):
-        rows, places = maker.real(query), np.arange(0, len(maker.real(reference)), step)
-        frames = np.arange(first, len(rows), step)
+        rows, known = maker.real(query), maker.real(reference)
+        frames, places = np.arange(first, len(rows), step), np.arange(0, len(known), step)
         truth = truth_of(way_of(maker, query, reference), frames, places, near_of(step))
-        return rows[frames], maker.real(reference)[places], truth
+        return rows[frames], known[places], truth
     return make
 
 
@@ -148,9 +152,11 @@ def out_of_the_map(query: str, reference: str, share: float, end: bool):
     def make(maker: Maker):
         rows, known = maker.real(query), maker.real(reference)
         count = int(len(known) * share)
-        kept = np.arange(len(known))[-count:] if end else np.arange(count)
-        truth = truth_of(way_of(maker, query, reference), np.arange(len(rows)), kept)
-        return rows, known[kept], truth | {f: [] for f in range(len(rows)) if f not in kept}
+        first = len(known) - count if end else 0
+        kept = range(first, first + count)
+        truth = truth_of(way_of(maker, query, reference), np.arange(len(rows)), np.array(kept))
+        return (rows, known[first:first + count],
+                truth | {frame: [] for frame in range(len(rows)) if frame not in kept})
     return make
 
 
@@ -199,10 +205,8 @@ def short_loop(first: str, second: str, length: int, draw: int):
     def make(maker: Maker):
         before, after = maker.real(first), maker.real(second)
         frames = start_of(len(before), length, dice_of(draw)) + np.arange(length)
-        truth: Truth = {i: [] for i in range(length)}
-        truth |= {length + i: places for i, places
-                  in truth_of(way_of(maker, first, second), frames, frames).items()}
-        return np.vstack([before[frames], after[frames]]), None, truth
+        truth = truth_of(way_of(maker, first, second), frames, frames)
+        return np.vstack([before[frames], after[frames]]), None, after_new(length, truth)
     return make
 
 
@@ -211,12 +215,10 @@ def behind_a_detour(first: str, second: str, detour: str, length: int, draw: int
     def make(maker: Maker):
         before, after, far = maker.real(first), maker.real(second), maker.real(detour)
         there = start_of(len(far), length, dice_of(draw))
-        new = len(before) + length
         frames = np.arange(len(after))
-        truth: Truth = {i: [] for i in range(new)}
-        truth |= {new + i: places for i, places
-                  in truth_of(way_of(maker, first, second), frames, frames).items()}
-        return np.vstack([before, far[there:there + length], after]), None, truth
+        truth = truth_of(way_of(maker, first, second), frames, frames)
+        return (np.vstack([before, far[there:there + length], after]), None,
+                after_new(len(before) + length, truth))
     return make
 
 
@@ -229,16 +231,17 @@ def hard_drives() -> list[Drive]:
     def add(name: str, make, needs: tuple[str, ...]) -> None:
         drives.append(Drive(f"hard-{name}", make, (0, 0), needs))
 
-    edits: dict[str, Edit] = {
+    certain: dict[str, Edit] = {
+        "twice": functools.partial(repeated, 2),
+        "three-times": functools.partial(repeated, 3)}
+    by_chance: dict[str, Edit] = {
         **{f"lost-{share}": functools.partial(lost, share, 1) for share in (0.1, 0.3, 0.5)},
         "lost-0.2-by-6": functools.partial(lost, 0.2, 6),
-        "twice": functools.partial(repeated, 2),
-        "three-times": functools.partial(repeated, 3),
         "hidden-20": functools.partial(hidden, 20),
         "turning-back": functools.partial(turning_back, 70)}
     for base, (query, reference) in pairs.items():
-        for name, edit in edits.items():
-            for draw in range(1 if name in ("twice", "three-times") else DRAWS):
+        for draws, edits in ((1, certain), (DRAWS, by_chance)):
+            for (name, edit), draw in itertools.product(edits.items(), range(draws)):
                 add(f"{name}-{base}", edited(query, reference, edit, draw), (query, reference))
                 add(f"{name}-{base}-loop", edited_loop(reference, query, edit, draw),
                     (query, reference))

@@ -118,7 +118,7 @@ class Keyframes {
     const bool some_time_ago = keyframes_ >= before_noise_is_known && since_earlier_ >= some_time &&
                                since_earlier_ < renewed_after;
     const double alike = unrelated - differs;
-    const bool still = some_time_ago && differs < still_alike * unrelated &&
+    const bool still = some_time_ago && differs < by_chance * unrelated &&
                        unrelated - squared_distance(earlier_, descriptor) >= as_alike * alike &&
                        (still_in_a_row_ == 0 || alike >= goes_on * usually_alike_);
     still_in_a_row_ = still ? still_in_a_row_ + 1 : 0;
@@ -177,7 +177,7 @@ class Keyframes {
   // Less than this share of what is usually new is nothing.
   static constexpr double stands = 0.15;
   // Noise is what is new since so many keyframes ago, too, until so many; so much alike, at so many
-  // frames in a row. Less than so much may be alike by chance.
+  // frames in a row.
   static constexpr std::uint64_t some_time = 8;
   static constexpr std::uint64_t renewed_after = 17;
   static constexpr double as_alike = 0.95;
@@ -185,7 +185,8 @@ class Keyframes {
   static constexpr double goes_on = 0.85;  // with less of what was alike in that row
   // What all frames show alike is not standardised yet in the first ones.
   static constexpr std::uint64_t before_noise_is_known = 40;
-  static constexpr double still_alike = 0.6;
+  // What differs by more of what unrelated frames do may be alike by chance.
+  static constexpr double by_chance = 0.6;
   static constexpr double apart_at_first = 1.0;
   static constexpr double changes_at_first = 5.0;  // as if seen
   static constexpr double new_at_first = 0.1;

@@ -132,11 +132,6 @@ class PendingAnswers {
   void inserted(std::size_t row) noexcept;
 
  private:
-  /// Where the robot was found.
-  struct Found {
-    std::uint64_t frame;
-    std::size_t row;  // `none`: it has gone
-  };
   /// How much better one line is than another.
   struct Lead {
     double here;
@@ -235,7 +230,8 @@ class PendingAnswers {
   TraceSpan span_;
   JumpRate jump_rate_;
   AcceptedFrames accepted_;
-  std::optional<Found> last_found_;  // by the newest frame whose answer was accepted
+  // By the newest frame whose answer was accepted; row `none`: it has gone.
+  std::optional<JumpRate::Found> last_found_;
   std::uint64_t oldest_before_ = 0;  // frame that belonged together with the newest a step ago
 };
 

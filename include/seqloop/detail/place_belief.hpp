@@ -188,6 +188,8 @@ class PlaceBelief {
   void sharpen(const PlaceOrder& order, const Scene& scene, std::span<const double> gains) noexcept;
   [[nodiscard]] std::span<Hypothesis> of_session(const PlaceOrder& order,
                                                  std::size_t row) const noexcept;
+  /// Whether "somewhere new" has no more than half of the belief.
+  [[nodiscard]] bool is_on_map() const noexcept { return new_place_ <= 0.5; }
   void judge(const SceneView& view, const Scene& scene, double jumps) noexcept;
   void share_history(const PlaceOrder& order, const Hypothesis& top, Hypothesis& at) noexcept;
   [[nodiscard]] bool is_of_this_drive(const PlaceOrder& order, std::size_t row) const noexcept;
